@@ -25,9 +25,18 @@ impl Column {
         Self::made(name, units::of(unit, greatest(values.clone())), values)
     }
 
+    /// In a unit of its own.
+    pub(crate) fn scaled(
+        name: &'static str,
+        (unit, scale): (&str, f64),
+        values: impl Iterator<Item = f64>,
+    ) -> Self {
+        Self::made(name, (scale, unit.to_string()), values)
+    }
+
     /// A fraction.
     pub(crate) fn percent(name: &'static str, values: impl Iterator<Item = f64>) -> Self {
-        Self::made(name, (0.01, "%".to_string()), values)
+        Self::scaled(name, ("%", 0.01), values)
     }
 
     fn made(

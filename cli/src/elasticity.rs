@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use asperity::kernel::{KernelOrigin, LayeredBody};
+use asperity::kernel::{KernelOrigin, LayeredBody, Layering};
 use asperity::record::LoadingRecord;
 use asperity::{
     Boundary, Error, Grid, InfluenceKernel, Warning, composite_modulus, plane_strain_modulus,
@@ -117,6 +117,17 @@ impl Bodies {
     /// What looks wrong with the greatest pressure of a contact in which nothing yields.
     pub(crate) fn warning_of(&self, pressure: f64) -> Option<Warning> {
         Warning::of_pressure(pressure, self.e_star, self.hardness)
+    }
+
+    /// What they are made of, for what follows from a contact.
+    pub(crate) fn layering(&self, boundary: Boundary) -> Layering {
+        match &self.layered {
+            Some(body) => body.layering(),
+            None => match boundary {
+                Boundary::PeriodicX | Boundary::PeriodicY => Layering::SemiPeriodicHalfSpace,
+                Boundary::Free | Boundary::Periodic => Layering::HalfSpace,
+            },
+        }
     }
 
     /// How they answer on a grid.

@@ -6,8 +6,9 @@ use std::time::Instant;
 
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
+use asperity::kernel::Theory;
 use asperity::{ContactTarget, FixedLoadSolver, Grid, InfluenceKernel, Warning};
-use asperity_cli::half_space::Periodic;
+use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, note, panel, say, speech};
@@ -16,6 +17,7 @@ use serde_json::{Map, Value, json};
 
 use crate::advice;
 use crate::at::At;
+use crate::conduction::{Conduct, conductances};
 use crate::contact_map::draw as draw_map;
 use crate::elasticity::Elasticity;
 use crate::hardness::Hardness;
@@ -45,6 +47,9 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     hardness: Hardness,
+
+    #[command(flatten)]
+    conduct: Conduct,
 
     #[command(flatten)]
     loads: Loads,
@@ -118,6 +123,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let asked = options.loads.all()?;
     let bodies = options.elasticity.required()?;
+    let conductions = options.conduct.conductions(bodies.e_star)?;
+    let layering = bodies.layering(boundary(options.periodic));
+    if !conductions.is_empty() {
+        layering
+            .check(Theory::Conductance)
+            .map_err(|error| Failure::new("cannot compute a conductance", error))?;
+    }
     let surface = options.reading.surface(&options.surface)?;
     let hardness = options.hardness.of(&bodies)?;
     note!("bodies     {bodies}");
@@ -162,18 +174,28 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         })?;
     }
     let mut outcome = Outcome::default();
-    let mut table = format!("{}\n", COLUMNS.join(","));
+    let names = COLUMNS.into_iter().chain(conductions.iter().map(|(name, _)| *name));
+    let mut table = format!("{}\n", names.collect::<Vec<_>>().join(","));
+    let conducts = !conductions.is_empty();
     let (mut rows, mut states, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     for &at in &asked {
-        let solved = solve(&mut solver, at, &grid).and_then(|(solution, seconds)| {
+        let solved = solve(&mut solver, (at, conducts), &grid).and_then(|(solution, seconds)| {
             let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
             let resolution = resolution
                 .map_err(|error| Failure::new("cannot find the contact patches", error))?;
-            let numbers = numbers(&solution, &resolution, &grid);
+            let row = Row {
+                contact: solution.state,
+                greatest: solution.max_pressure(),
+                corrected_area: resolution.corrected_area,
+                yielded: solution.plastic.as_ref().map(|p| p.area / grid.nominal_area()),
+                conductances: conductances(&conductions, &solution.state, layering),
+            };
+            let numbers = numbers(&solution, &row, &grid);
+            let cells: Vec<&str> = numbers.iter().map(|(_, number)| number.as_str()).collect();
             // Writing to a text cannot fail.
-            let _ = writeln!(table, "{}", numbers.join(","));
+            let _ = writeln!(table, "{}", cells.join(","));
             states.push(object(&numbers, &solution, seconds.0));
-            rows.push(row(&solution, &resolution, &grid));
+            rows.push(row);
             print_words(at, &solution, &resolution, seconds);
             let on = (&grid, half_space.boundary());
             let of_contact = Warning::of_contact(&solution.pressure, &solution.contact_map, on)
@@ -220,7 +242,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 /// A solution with its stiffnesses, and the seconds that it and they took.
 fn solve(
     solver: &mut FixedLoadSolver,
-    at: At,
+    (at, conducts): (At, bool),
     grid: &Grid,
 ) -> Result<(FixedLoadSolution, (f64, f64)), Failure> {
     let target = at.target(grid.nominal_area());
@@ -235,19 +257,12 @@ fn solve(
     let mut solution = solver.solve_target(target).map_err(failed)?;
     let seconds = start.elapsed().as_secs_f64();
     solver.add_stiffness(&mut solution).map_err(failed)?;
+    // What has yielded conducts by the stiffness on unloading.
+    if conducts && solution.plastic.is_some() {
+        solver.add_unloading_stiffness(&mut solution).map_err(failed)?;
+    }
     let seconds_more = start.elapsed().as_secs_f64() - seconds;
     Ok((solution, (seconds, seconds_more)))
-}
-
-/// What people read of it.
-fn row(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -> Row {
-    let plastic = solution.plastic.as_ref();
-    Row {
-        contact: solution.state,
-        greatest: solution.max_pressure(),
-        corrected_area: resolution.corrected_area,
-        yielded: plastic.map(|plastic| plastic.area / grid.nominal_area()),
-    }
 }
 
 /// The columns of load.csv, in SI units.
@@ -267,15 +282,15 @@ const COLUMNS: [&str; 13] = [
     "plastic_volume",
 ];
 
-/// The numbers of those columns; nothing where there is none.
-fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -> [String; 13] {
+/// The numbers of those columns and of conductances, by name; nothing where there is none.
+fn numbers(solution: &FixedLoadSolution, row: &Row, grid: &Grid) -> Vec<(&'static str, String)> {
     let state = solution.state;
     let exact = |value: f64| format!("{value:e}");
     let optional = |value: Option<f64>| value.map_or_else(String::new, exact);
-    [
+    let of_columns = [
         exact(state.load),
         state.contact_nodes.to_string(),
-        exact(solution.max_pressure()),
+        exact(row.greatest),
         exact(state.mean_gap),
         exact(state.approach),
         optional(state.contact_stiffness),
@@ -283,15 +298,18 @@ fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -
         exact(state.load / grid.nominal_area()),
         exact(state.contact_area),
         exact(state.contact_area_fraction),
-        exact(resolution.corrected_area),
-        exact(solution.plastic.as_ref().map_or(0.0, |p| p.area / grid.nominal_area())),
+        exact(row.corrected_area),
+        exact(row.yielded.unwrap_or(0.0)),
         exact(solution.plastic.as_ref().map_or(0.0, |plastic| plastic.volume)),
-    ]
+    ];
+    let conducted = row.conductances.iter();
+    let conducted = conducted.map(|(carrier, value)| (carrier.column(), exact(*value)));
+    COLUMNS.into_iter().zip(of_columns).chain(conducted).collect()
 }
 
 /// The same for programs, and the effort; what is no number is null.
-fn object(numbers: &[String; 13], solution: &FixedLoadSolution, seconds: f64) -> Value {
-    let named = COLUMNS.iter().zip(numbers).map(|(name, number)| {
+fn object(numbers: &[(&'static str, String)], solution: &FixedLoadSolution, seconds: f64) -> Value {
+    let named = numbers.iter().map(|(name, number)| {
         // Counts are integers.
         let count = number.parse().map(|count: u64| json!(count));
         let value = count.or_else(|_| number.parse().map(|number: f64| json!(number)));

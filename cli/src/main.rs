@@ -3,6 +3,7 @@
 mod advice;
 mod at;
 mod columns;
+mod conduction;
 mod contact_map;
 mod creep;
 mod elasticity;

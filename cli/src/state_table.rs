@@ -1,6 +1,7 @@
 //! The table of states that people read: the same for paths and single loads.
 
 use asperity::contact::ContactState;
+use asperity::joint::Carrier;
 use asperity_cli::half_space::{Periodic, is_of_mean_planes};
 use asperity_cli::say;
 
@@ -16,6 +17,8 @@ pub(crate) struct Row {
     pub(crate) corrected_area: f64,
     /// Area of yielded cells over nominal area, if cells yield.
     pub(crate) yielded: Option<f64>,
+    /// What it conducts \[W/K, S\]; the same carriers in every row.
+    pub(crate) conductances: Vec<(Carrier, f64)>,
 }
 
 /// Prints the rows, and what their columns are.
@@ -44,6 +47,14 @@ pub(crate) fn print(rows: &[Row], nominal_area: f64, periodic: Option<Periodic>)
     // A periodic half-space has no contact stiffness.
     let has_k = rows.iter().any(|row| row.contact.contact_stiffness.is_some());
     columns.retain(|column| has_k || column.name() != "K");
+    let carriers = rows.first().map_or(&[][..], |row| &row.conductances);
+    for (k, (carrier, _)) in carriers.iter().enumerate() {
+        let (name, unit) = match carrier {
+            Carrier::Heat => ("heat", "W/(m² K)"),
+            Carrier::Current => ("current", "S/m²"),
+        };
+        columns.push(column(name, unit, &|row| row.conductances[k].1 / nominal_area));
+    }
     print_columns(&columns);
     say!();
     say!("pressure: load over nominal area; greatest: the greatest pressure of a cell");
@@ -58,5 +69,8 @@ pub(crate) fn print(rows: &[Row], nominal_area: f64, periodic: Option<Periodic>)
         say!("yielded: cells at the hardness; they count as contact");
     }
     say!("K_i: interfacial stiffness, -d load/d mean gap");
+    if !carriers.is_empty() {
+        say!("heat, current: conductance per nominal area");
+    }
     say!();
 }

@@ -22,7 +22,7 @@ pub enum Units {
 static CHOSEN: OnceLock<Units> = OnceLock::new();
 
 /// SI units, what they are in mm, N, MPa and s, and the name there.
-const MILLIMETRES: [(&str, f64, &str); 12] = [
+const MILLIMETRES: [(&str, f64, &str); 14] = [
     ("m", 1e-3, "mm"),
     ("N", 1.0, "N"),
     ("Pa", 1e6, "MPa"),
@@ -35,6 +35,8 @@ const MILLIMETRES: [(&str, f64, &str); 12] = [
     ("m²/s", 1e-6, "mm²/s"),
     ("m³/s", 1e-9, "mm³/s"),
     ("rad/m", 1e3, "rad/mm"),
+    ("W/(m² K)", 1e3, "mW/(mm² K)"),
+    ("S/m²", 1e9, "A/(mV mm²)"),
 ];
 
 /// From here on tables and charts are in these units.

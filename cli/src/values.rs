@@ -148,11 +148,11 @@ impl Dimension {
     }
 }
 
+/// A dimension, and what is made of its values.
+type Kind<T> = (&'static Dimension, fn(f64) -> T);
+
 /// A number above zero of any of these dimensions; without a unit, of the first.
-pub(crate) fn any_of<T>(
-    text: &str,
-    kinds: &[(&'static Dimension, fn(f64) -> T)],
-) -> Result<T, String> {
+pub(crate) fn any_of<T>(text: &str, kinds: &[Kind<T>]) -> Result<T, String> {
     let (_, unit) = split(text)?;
     let found = kinds.iter().find(|(dimension, _)| dimension.factor(unit).is_some());
     let (dimension, made) = found.ok_or_else(|| {
@@ -290,7 +290,7 @@ mod tests {
                     ("2.3GPA", 2.3e9),
                     ("1 N/mm²", 1e6),
                     ("1bar", 1e5),
-                    ("1psi", 6894.757_293_168_361),
+                    ("1psi", 6_894.757_293_168_361),
                 ],
             ),
             (&FORCE, &[("1.5kN", 1500.0), ("3 mN", 3e-3), ("3MN", 3e6), ("2uN", 2e-6)]),

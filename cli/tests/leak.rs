@@ -83,6 +83,32 @@ fn leaks_are_printed_and_drawn() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// A gas of 3 bar into 1 leaks twice as much as a liquid of that viscosity, told as throughput too; a least gap closes the seal earlier.
+#[test]
+fn gases_leak_and_narrow_gaps_do_not() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("gas")?;
+    assert!(run(&folder, &PATH)?.status.success());
+    let leak = |more: &str| -> Result<(Value, String), Box<dyn Error>> {
+        let line = "leak path.npz --viscosity 0.018mPa·s --pressure-drop 2bar --along x --states 6";
+        let words: Vec<&str> = line.split(' ').chain(more.split_whitespace()).collect();
+        let said = run(&folder, &words)?;
+        assert!(said.status.success());
+        let document = run(&folder, &[&words[..], &["--json"]].concat())?;
+        Ok((serde_json::from_slice(&document.stdout)?, String::from_utf8(said.stdout)?))
+    };
+    let rate = |document: &Value| document["states"][0]["leak_rate"].as_f64().ok_or("no rate");
+    let (liquid, words) = leak("")?;
+    assert!(words.contains("ml/min/m"), "{words}");
+    let (gas, words) = leak("--gas-outlet-pressure 1bar")?;
+    assert!((rate(&gas)? / rate(&liquid)? / 2.0 - 1.0).abs() < 1e-12);
+    assert!(words.contains("mbar l/s") && words.contains("leaves at 100 kPa"), "{words}");
+    let step = |document: &Value| document["step"].as_u64().ok_or("no state");
+    let (limited, words) = leak("--least-gap 20um")?;
+    assert!(step(&limited)? < step(&liquid)?, "{words}");
+    assert!(words.contains("through gaps of 20 µm and less"), "{words}");
+    Ok(())
+}
+
 /// Columns and files of a joint; on a record as on a path that begins.
 #[test]
 fn joints_are_tabulated() -> Result<(), Box<dyn Error>> {

@@ -150,7 +150,7 @@ fn contact_without_a_load_is_said() -> Done {
     let told = words(&folder.0, all)?;
     assert!(told.contains("`asperity load`") && !told.contains("check the units"), "{told}");
     let one = words(&folder.0, "load --surface flat.npy --side 1e-3 --material steel --load 10")?;
-    assert!(one.contains("mean pressure 10 MPa"), "{one}");
+    assert!(one.contains("greatest") && !one.contains("touch at the same height"), "{one}");
     Ok(())
 }
 

@@ -9,7 +9,10 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use asperity::io::write_npy;
+use asperity::surface::Topography;
 use common::{Scratch, asperity, data, is_refused, output, run, said};
+use nalgebra::DMatrix;
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
@@ -119,9 +122,10 @@ fn units_that_were_mistaken_are_said_in_every_command() -> Done {
 fn pressures_that_nothing_bears_are_said() -> Done {
     let folder = with_surface("pressures")?;
     let line = "load --surface rough.npy --side 1e-2 --material steel --load 1e99";
-    let words = said(&run(&folder.0, line)?);
-    assert!(words.contains("warning: the greatest pressure is"), "{words}");
-    assert!(words.contains("the contact is full"), "{words}");
+    let done = run(&folder.0, line)?;
+    let words = printed(&done);
+    assert!(words.contains("the greatest pressure is"), "{words}");
+    assert!(said(&done).contains("the contact is full"), "{}", said(&done));
     run(&folder.0, "path --nodes 64 --record path.npz")?;
     let words = printed(&run(&folder.0, "patches path.npz --out seen")?);
     assert!(words.contains("warning: the greatest pressure is"), "{words}");
@@ -152,7 +156,7 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
     let words = printed(&run(&folder.0, line)?);
     let table: Vec<&str> = words.lines().skip_while(|line| !line.contains("mean gap")).collect();
     assert!(table[0].trim_start().starts_with("load  pressure"), "{words}");
-    for (row, begin) in table[2..6].iter().zip(["100.0", "100.0", "200.0", ""]) {
+    for (row, begin) in table[2..6].iter().zip(["0.1000", "0.1000", "0.2000", ""]) {
         assert!(row.trim_start().starts_with(begin), "{words}");
     }
     assert!(words.contains("wrote out/load.csv"), "{words}");
@@ -256,6 +260,128 @@ fn units_are_understood_and_chosen() -> Done {
     }
     let hint = said(&run(&folder.0, "path --nodes 16 --hardness 2.5 --at 1mPa")?);
     assert!(hint.contains("If it was given in GPa, it is 2.5 GPa"), "{hint}");
+    Ok(())
+}
+
+/// The roughness that is asked for is that of the surface, isotropic or not.
+#[test]
+fn generated_surfaces_have_the_roughness_that_is_asked_for() -> Done {
+    let folder = Scratch::new("roughness")?;
+    let heights = |options: &str| -> Result<Topography, Box<dyn Error>> {
+        let line =
+            format!("path --nodes 64 --side 1mm --max-area-fraction 1% {options} --record r.npz");
+        run(&folder.0, &line)?;
+        let record = asperity::record::LoadingRecord::read_npz(folder.join("r.npz"))?;
+        Ok(Topography::new(record.grid(), record.heights().matrix().clone())?)
+    };
+    let base = "--hurst 0.9 --rolloff 0.25mm";
+    let surface = heights(&format!("--sq 1um {base}"))?;
+    assert!((surface.map().rms_height() / 1e-6 - 1.0).abs() < 1e-12);
+    // The gradient is that of the waves, not of differences.
+    let surface = heights(&format!("--rms-gradient 0.1 {base} --short-cutoff 62.5um"))?;
+    assert!((surface.rms_gradient_spectral() / 0.1 - 1.0).abs() < 1e-12);
+    let along = |surface: &Topography, (x, y): (f64, f64)| -> f64 {
+        let (heights, grid) = (surface.map().matrix(), surface.grid());
+        let (nx, ny) = grid.shape();
+        let square = |ix: usize, iy: usize| {
+            let dx = (heights[((ix + 1) % nx, iy)] - heights[(ix, iy)]) / grid.dx();
+            let dy = (heights[(ix, (iy + 1) % ny)] - heights[(ix, iy)]) / grid.dy();
+            (x * dx).powi(2) + (y * dy).powi(2)
+        };
+        (0..nx * ny).map(|k| square(k % nx, k / nx)).sum()
+    };
+    let stretched = heights(&format!("--rms-gradient 0.1 {base} --anisotropy 4"))?;
+    assert!((stretched.rms_gradient_spectral() / 0.1 - 1.0).abs() < 0.05);
+    let ratio = (along(&stretched, (0.0, 1.0)) / along(&stretched, (1.0, 0.0))).sqrt();
+    assert!((ratio / 4.0 - 1.0).abs() < 0.2, "{ratio}");
+    assert!(
+        said(&run(&folder.0, "path --nodes 32 --sq 1um --max-area-fraction 1%")?)
+            .contains("generated: self-affine")
+    );
+    for refused in ["--sq 1um --rms-gradient 0.1", "--surface r.npy --sq 1um", "--hurst 1.5"] {
+        assert_eq!(
+            output(&folder.0, &format!("path {refused}"))?.status.code(),
+            Some(2),
+            "{refused}"
+        );
+    }
+    Ok(())
+}
+
+/// Two rough bodies are one with the sum of both, of which the second is turned over.
+#[test]
+fn two_rough_surfaces_face_each_other() -> Done {
+    let folder = with_surface("facing")?;
+    let rough = asperity::io::read_npy(folder.join("rough.npy"))?;
+    let other = DMatrix::from_fn(48, 48, |ix, iy| 1e-6 * ((ix * ix + 7 * iy) % 13) as f64);
+    write_npy(folder.join("other.npy"), &other)?;
+    let sum = |map: &dyn Fn(usize, usize) -> (usize, usize)| {
+        DMatrix::from_fn(48, 48, |ix, iy| rough[(ix, iy)] + other[map(ix, iy)])
+    };
+    write_npy(folder.join("turned_over.npy"), &sum(&|ix, iy| (47 - ix, iy)))?;
+    write_npy(folder.join("turned.npy"), &sum(&|ix, iy| (ix, 47 - iy)))?;
+    let body = "--side 1cm --material steel --max-area-fraction 5% --out";
+    let table = |surfaces: &str, out: &str| -> Result<Vec<u8>, Box<dyn Error>> {
+        run(&folder.0, &format!("path --surface {surfaces} {body} {out}"))?;
+        Ok(fs::read(folder.join(out).join("path.csv"))?)
+    };
+    let both = "rough.npy --against-surface other.npy";
+    assert_eq!(table(both, "a")?, table("turned_over.npy", "b")?);
+    assert_eq!(table(&format!("{both} --against-turned"), "c")?, table("turned.npy", "d")?);
+    write_npy(folder.join("small.npy"), &other.resize(24, 24, 0.0))?;
+    let small = "path --surface rough.npy --against-surface small.npy --side 1cm --material steel";
+    is_refused(&output(&folder.0, small)?, &["two rough surfaces need one grid", "24 x 24 nodes"]);
+    Ok(())
+}
+
+/// An array that is an image gives what its transposed one does.
+#[test]
+fn arrays_may_be_images() -> Done {
+    let folder = with_surface("image")?;
+    let rough = asperity::io::read_npy(folder.join("rough.npy"))?;
+    write_npy(folder.join("image.npy"), &rough.rows(0, 32).transpose())?;
+    write_npy(folder.join("array.npy"), &rough.rows(0, 32).into_owned())?;
+    let line = "--side 1cm --material steel --max-area-fraction 5% --out";
+    let words = said(&run(&folder.0, &format!("path --surface array.npy {line} a"))?);
+    assert!(words.contains("`--rows-are-y` takes an image"), "{words}");
+    let words = said(&run(&folder.0, &format!("path --surface image.npy --rows-are-y {line} b"))?);
+    assert!(!words.contains("--rows-are-y"), "{words}");
+    let table = |name: &str| fs::read(folder.join(name).join("path.csv"));
+    assert_eq!(table("a")?, table("b")?);
+    Ok(())
+}
+
+/// Per nominal area, for one load as on the path to it, with what yields too.
+#[test]
+fn conductances_are_told_of_every_state() -> Done {
+    let folder = with_surface("conducts")?;
+    for hardness in ["", "--hardness 2.5GPa"] {
+        let of = format!(
+            "--surface rough.npy --side 1cm --material steel {hardness} --conductivity 50,50 --at 50MPa"
+        );
+        let object = |command: &str| -> Result<Value, Box<dyn Error>> {
+            Ok(serde_json::from_str(&printed(&run(&folder.0, &format!("{command} {of} --json"))?))?)
+        };
+        let conductance =
+            |value: &Value| value["thermal_conductance"].as_f64().ok_or("no conductance");
+        let load = object("load")?;
+        let (one, path) = (conductance(&load["states"][0])?, object("path")?);
+        let on_path = conductance(&path["at"][0])?;
+        // The tolerance of the single load.
+        assert!((one / on_path - 1.0).abs() < 1e-6, "{one} {on_path}");
+        assert_eq!(conductance(&path)?, on_path);
+        for command in ["load", "path"] {
+            let words = printed(&run(&folder.0, &format!("{command} {of} --units mm-N-MPa"))?);
+            let row = words
+                .lines()
+                .skip_while(|line| !line.contains("mW/(mm² K)"))
+                .nth(1)
+                .ok_or("no row")?;
+            let shown: f64 = row.split_whitespace().last().ok_or("no cell")?.parse()?;
+            // 1 mW/(mm² K) on 100 mm² is 0.1 W/K.
+            assert!((shown / (10.0 * one) - 1.0).abs() < 1e-3, "{shown} {one}");
+        }
+    }
     Ok(())
 }
 

@@ -544,7 +544,19 @@ class Report:
 
 @final
 class Seal:
-    def __new__(cls, viscosity: float, pressure_drop: float, along: _Axis) -> Seal: ...
+    def __new__(
+        cls,
+        viscosity: float,
+        pressure_drop: float,
+        along: _Axis,
+        *,
+        least_gap: float = 0.0,
+        outlet_pressure: float | None = None,
+    ) -> Seal: ...
+    @property
+    def least_gap(self) -> float: ...
+    @property
+    def outlet_pressure(self) -> float | None: ...
     @property
     def viscosity(self) -> float: ...
     @property

@@ -29,6 +29,11 @@ use crate::warnings::warn_all;
 ///     [Pa], from the lower end of the axis to the upper one.
 /// along : {"x", "y"}
 ///     Direction in which the fluid is pressed.
+/// least_gap : float
+///     [m]: nothing flows through gaps of this height and less.
+/// outlet_pressure : float, optional
+///     [Pa], absolute: the fluid is an ideal gas that leaves at it. Leak rates and fluxes are volumes there; times this pressure
+///     they are the throughput [Pa m³/s], of which 1 is 10 mbar l/s.
 ///
 /// Examples
 /// --------
@@ -46,9 +51,29 @@ pub(crate) struct Seal {
 #[pymethods]
 impl Seal {
     #[new]
-    #[pyo3(signature = (viscosity, pressure_drop, along))]
-    fn new(viscosity: f64, pressure_drop: f64, along: &str) -> Fallible<Self> {
-        Ok(Self { seal: leak::Seal::new(viscosity, pressure_drop, choice::axis(along)?)? })
+    #[pyo3(signature = (viscosity, pressure_drop, along, *, least_gap=0.0, outlet_pressure=None))]
+    fn new(
+        viscosity: f64,
+        pressure_drop: f64,
+        along: &str,
+        least_gap: f64,
+        outlet_pressure: Option<f64>,
+    ) -> Fallible<Self> {
+        let seal = leak::Seal::new(viscosity, pressure_drop, choice::axis(along)?)?;
+        let seal = seal.with_least_gap(least_gap)?;
+        Ok(Self { seal: outlet_pressure.map_or(Ok(seal), |pressure| seal.with_gas(pressure))? })
+    }
+
+    /// Height [m] of gaps through which nothing flows any more.
+    #[getter]
+    fn least_gap(&self) -> f64 {
+        self.seal.least_gap()
+    }
+
+    /// Absolute pressure [Pa] at which a gas leaves, None for a liquid.
+    #[getter]
+    fn outlet_pressure(&self) -> Option<f64> {
+        self.seal.outlet_pressure()
     }
 
     /// Viscosity [Pa s].

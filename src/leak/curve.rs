@@ -73,6 +73,7 @@ impl Seal {
         Error::require("number of states", states as f64, states > 1, "two or more")?;
         let events = history.states();
         let closing = closing(events, path, self.along())?;
+        let closing = self.closing_by_gap(events, closing, path)?;
         // Those that may leak: of states at one approach too, since each has its contact.
         let leaking = closing.unwrap_or(events.len());
         let mut points: Vec<(usize, LeakPoint)> = Vec::new();
@@ -95,6 +96,33 @@ impl Seal {
         }
         let points = points.into_iter().map(|(_, point)| point).collect();
         Ok(LeakCurve { points, closing: closing.map(|place| events[place]) })
+    }
+}
+
+impl Seal {
+    /// The place of the first state at which no channel wider than the least gap is left, up to the `closing` by contact: gaps only
+    /// become narrower under load.
+    fn closing_by_gap<U: LinearUpdater>(
+        &self,
+        states: &[LoadingState],
+        closing: Option<usize>,
+        path: &mut LoadingSolver<U>,
+    ) -> Result<Option<usize>, Error> {
+        // Where nodes leave the contact gaps widen again.
+        let widens = || states.iter().any(|state| state.event == ContactEvent::Release);
+        if self.least_gap() == 0.0 || widens() {
+            return Ok(closing);
+        }
+        let end = closing.unwrap_or(states.len());
+        let (mut open, mut closed) = (0, end);
+        while open < closed {
+            let middle = open.midpoint(closed);
+            match self.leak_at(path, &states[middle])?.is_closed() {
+                true => closed = middle,
+                false => open = middle + 1,
+            }
+        }
+        Ok(if closed < end { Some(closed) } else { closing })
     }
 }
 

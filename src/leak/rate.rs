@@ -20,7 +20,8 @@ const IN_RANGE: &str = "positive and finite in the units of the input";
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Leak {
-    /// Leak rate Q \[m³/s\] through the whole width of the grid: exactly 0 if no channel leads from edge to edge.
+    /// Leak rate Q \[m³/s\] through the whole width of the grid: exactly 0 if no channel leads from edge to edge. Of a [gas](Seal::with_gas) it
+    /// is the volume at the pressure of the outlet.
     pub leak_rate: f64,
     /// Permeability along the flow, $`K_{aa} = Q L_a / (L_c \Delta p)`$ \[m³/(Pa s)\], with the sides of the grid along and across: of a
     /// gap g everywhere it is g³/12η.
@@ -32,7 +33,7 @@ pub struct Leak {
     pub mean_field_leak_rate: f64,
     /// The narrowest place of the widest channel; `None` if nothing leaks.
     pub constriction: Option<CriticalConstriction>,
-    /// Fluid pressure \[Pa\] at each node, between the pressure drop at the edge where the fluid enters and 0. NaN where there is no fluid and
+    /// Fluid pressure \[Pa\] at each node above that of the outlet, between the pressure drop at the edge where the fluid enters and 0. NaN where there is no fluid and
     /// in pools that are cut off from both edges, whose pressure is any. Where the fluid rests it is that of its edge.
     pub pressure: DMatrix<f64>,
     /// Flux \[m²/s\], volume per time and width, along x.
@@ -120,7 +121,8 @@ impl Leak {
         contact_map: &DMatrix<bool>,
         (grid, boundary): (&Grid, Boundary),
     ) -> Result<Self, Error> {
-        let network = Network::new(gap, contact_map, (grid, boundary), seal.along())?;
+        let closed = closed(contact_map, gap, seal.least_gap());
+        let network = Network::new(gap, &closed, (grid, boundary), seal.along())?;
         let flowing = network.flowing();
         let (nx, ny) = grid.shape();
         let blank = || DMatrix::zeros(nx, ny);
@@ -146,7 +148,7 @@ impl Leak {
         }
         // Of a square of the greatest gap.
         let conductance = seal.conductivity(network.greatest_gap)?;
-        let scale = conductance * seal.pressure_drop();
+        let scale = conductance * seal.drive();
         let is_one = scale > 0.0 && scale.is_finite();
         Error::require("leak rate of a square of the greatest gap", scale, is_one, IN_RANGE)?;
         let [along, across] = [0, 1].map(|k| layout.nodes[k] as f64 * layout.cell[k]);
@@ -169,6 +171,15 @@ impl Leak {
         leak.constriction = flows.constriction(gap, (grid, boundary), seal.along())?;
         Ok(leak)
     }
+}
+
+/// Nodes that nothing flows through: those in contact, and those whose gap is too narrow.
+fn closed(contact_map: &DMatrix<bool>, gap: &DMatrix<f64>, least_gap: f64) -> DMatrix<bool> {
+    // Of another shape it is refused later.
+    if least_gap == 0.0 || contact_map.shape() != gap.shape() {
+        return contact_map.clone();
+    }
+    contact_map.zip_map(gap, |is_in_contact, gap| is_in_contact || (0.0..=least_gap).contains(&gap))
 }
 
 /// The pressure where the fluid rests.
@@ -209,7 +220,7 @@ impl Flows<'_> {
             leak.sections[place + 1] += out[BEHIND] * scale;
             self.across_flow += 0.5 * (out[RIGHT] - out[LEFT]);
             let [pressure, ..] = self.flow.pressure(node);
-            leak.pressure.as_mut_slice()[node] = pressure * seal.pressure_drop();
+            leak.pressure.as_mut_slice()[node] = seal.pressure(pressure);
             // The mean of both faces, over their width.
             let flux = [
                 0.5 * (out[BEHIND] - out[0]) * (scale / across),

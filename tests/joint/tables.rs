@@ -1,6 +1,6 @@
 //! Tables for finite elements: their error, their order, and their syntax.
 
-use asperity::joint::{Conduction, FeProgram, InterfaceRow, InterfaceTable};
+use asperity::joint::{Conduction, FeProgram, FeUnits, InterfaceRow, InterfaceTable};
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::History;
 use asperity::{
@@ -195,6 +195,36 @@ fn programs_find_the_numbers_where_they_look() {
     assert!(
         current.text(FeProgram::Csv).starts_with("pressure,overclosure,electrical_conductance\n")
     );
+}
+
+/// The same law in mm, N, MPa, t, s and A: energies in mJ, so that pressure times overclosure, conductance times a temperature or half a
+/// voltage squared, and slip limit squared over stiffness are what they were, per mm².
+#[test]
+fn tables_may_be_in_millimetres() {
+    let history = &paths()[1];
+    let heat = table(history, 0.02);
+    let current = Conduction::electrical(E_STAR, 3.4e-8).unwrap();
+    let current = InterfaceTable::builder(history).conduction(current).build().unwrap();
+    let read = |table: &InterfaceTable, units: FeUnits| -> Vec<Vec<f64>> {
+        let text = table.text_in(FeProgram::Csv, units);
+        let lines = text.lines().skip(1);
+        lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+    };
+    for (table, conductance) in [(&heat, 1e-3), (&current, 1e-9)] {
+        let both = read(table, FeUnits::Si).into_iter().zip(read(table, FeUnits::Millimetres));
+        for (si, mm) in both {
+            // MPa, mm, mW/(mm² K) or A/(mV mm²), MPa/mm, MPa.
+            for ((si, mm), unit) in si.iter().zip(&mm).zip([1e-6, 1e3, conductance, 1e-9, 1e-6]) {
+                assert!((mm - unit * si).abs() <= 1e-12 * mm, "{si:e} {mm:e}");
+            }
+        }
+    }
+    for program in [FeProgram::Abaqus, FeProgram::CalculiX, FeProgram::Moose] {
+        let text = heat.text_in(program, FeUnits::Millimetres);
+        assert!(text.lines().next().unwrap().contains("in mm, N, MPa, t, s, A"), "{text}");
+        assert_eq!(heat.text_in(program, FeUnits::Si), heat.text(program));
+        assert!(heat.text(program).lines().next().unwrap().ends_with("in SI units"));
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod along_paths;
 mod channels;
 mod chequerboard;
 mod contrast;
+mod gases;
 mod references;
 mod refusals;
 

@@ -21,13 +21,13 @@ use asperity_cli::{answer, panel, speech};
 use clap::{Args, ValueEnum};
 
 use crate::advice;
-use crate::values::{FORCE, PRESSURE, VISCOSITY};
+use crate::values::{FORCE, LENGTH, PRESSURE, VISCOSITY};
 
 /// Leak rate through the gap along a recorded path: Reynolds' equation on the gap, contact closed
 ///
 /// A fluid is pressed from one edge of the surface to the opposite one. The other two edges are closed, unless the half-space is periodic.
 /// Prints the leak rate at states of the path that are chosen where it changes, up to the one at which the last channel closes, and writes
-/// leak.csv and leak.png; for each --load, or else for the last state that leaks, it writes maps of the fluid pressure and of the flux.
+/// leak.csv and leak.png; for each --load, or else for half of that load, it writes maps of the fluid pressure and of the flux.
 ///
 /// The pressure of the fluid does not open the gap. The leak rate is that of the grid: shortly before the last channel closes, a constriction
 /// of few cells decides.
@@ -45,11 +45,20 @@ pub(crate) struct Options {
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     pressure_drop: f64,
 
+    /// The fluid is an ideal gas, which leaves at this absolute pressure: leak rates are volumes there, and its throughput is told too
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
+    gas_outlet_pressure: Option<f64>,
+
+    /// Gap through which nothing flows any more, and through narrower ones [default: only contact closes]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    least_gap: Option<f64>,
+
     /// Direction in which the fluid is pressed
     #[arg(long, value_enum)]
     along: Along,
 
-    /// Load of a state of which fluid pressure and flux are drawn; may be given several times [default: the last state that leaks]
+    /// Load of a state of which fluid pressure and flux are drawn; may be given several times [default: half of
+    /// the load at which the last channel closes, or the last state]
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
     load: Vec<f64>,
 
@@ -99,7 +108,14 @@ impl Work {
         let failed = |error| Failure::new("cannot compute a leak", error);
         let path = record.replay().map_err(failed)?;
         let along = options.along.into();
-        let seal = Seal::new(options.viscosity, options.pressure_drop, along).map_err(failed)?;
+        let mut seal =
+            Seal::new(options.viscosity, options.pressure_drop, along).map_err(failed)?;
+        if let Some(gap) = options.least_gap {
+            seal = seal.with_least_gap(gap).map_err(failed)?;
+        }
+        if let Some(pressure) = options.gas_outlet_pressure {
+            seal = seal.with_gas(pressure).map_err(failed)?;
+        }
         Ok(Self { record, path, seal })
     }
 
@@ -118,6 +134,14 @@ impl Work {
             })
         };
         loads.iter().map(at).collect()
+    }
+
+    /// The state at half of the load at which the last channel closes, otherwise the last one.
+    fn half_closed(&self, curve: &LeakCurve) -> Option<LoadingState> {
+        match &curve.closing {
+            Some(closing) => self.record.history().at_load(0.5 * closing.contact.load),
+            None => self.record.states().last().copied(),
+        }
     }
 
     fn leak(&mut self, state: &LoadingState) -> Result<Leak, Failure> {
@@ -156,7 +180,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.states > 0 {
         let curve = work.curve(options.states)?;
         documents.extend(curve.points.iter().map(words::point));
-        words::print_curve(&curve, &work.record);
+        words::print_curve(&curve, &work.record, &work.seal);
         pressures.extend(curve.points.iter().map(|point| point.state.contact.mean_pressure()));
         outcome.written(table::write(&curve, &out.join("leak.csv")));
         match charts::draw(&curve, &out.join("leak.png")) {
@@ -164,8 +188,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Err(failure) => outcome.note(Err(failure)),
         }
         if options.load.is_empty() {
-            let leaking = curve.points.iter().rev().find(|point| point.leak_rate > 0.0);
-            drawn.extend(leaking.map(|point| point.state));
+            drawn.extend(work.half_closed(&curve));
         }
     }
     for (k, state) in drawn.iter().enumerate() {

@@ -13,6 +13,18 @@ use crate::columns::{Column, print};
 /// Rows of the table on the screen.
 const ROWS: usize = 14;
 
+/// In m³/s.
+const MILLILITRE_A_MINUTE: f64 = 1e-6 / 60.0;
+
+/// The side across the flow \[m\].
+fn across(record: &LoadingRecord, seal: &Seal) -> f64 {
+    let (lx, ly) = record.grid().sides();
+    match seal.along() {
+        Axis::X => ly,
+        Axis::Y => lx,
+    }
+}
+
 fn axis(seal: &Seal) -> &'static str {
     match seal.along() {
         Axis::X => "x",
@@ -39,14 +51,24 @@ pub(super) fn print_seal(record: &LoadingRecord, seal: &Seal) {
         quantity(seal.pressure_drop(), "Pa", 4),
         axis(seal)
     );
+    if let Some(outlet) = seal.outlet_pressure() {
+        say!(
+            "it is an ideal gas, which leaves at {}: leak rates are volumes there; it does not slip on the surfaces",
+            quantity(outlet, "Pa", 4)
+        );
+    }
+    let narrow = match seal.least_gap() {
+        0.0 => String::new(),
+        gap => format!(", through gaps of {} and less", quantity(gap, "m", 4)),
+    };
     say!(
-        "nothing flows through contact or across corners of cells; the fluid does not open the gap"
+        "nothing flows through contact{narrow} or across corners of cells; the fluid does not open the gap"
     );
     say!();
 }
 
 /// Some of the points, and where the last channel closes.
-pub(super) fn print_curve(curve: &LeakCurve, record: &LoadingRecord) {
+pub(super) fn print_curve(curve: &LeakCurve, record: &LoadingRecord, seal: &Seal) {
     let points = &curve.points;
     let some = (0..points.len())
         .filter(|k| (points.len() - 1 - k).is_multiple_of(1 + points.len() / ROWS));
@@ -60,6 +82,12 @@ pub(super) fn print_curve(curve: &LeakCurve, record: &LoadingRecord) {
         Column::new("mean gap", "m", of(|point| point.state.contact.mean_gap)),
         Column::new("narrowest", "m", of(narrowest)),
         Column::new("leak rate", "m³/s", of(|point| point.leak_rate)),
+        Column::scaled("leak rate", ("ml/min", MILLILITRE_A_MINUTE), of(|point| point.leak_rate)),
+        Column::scaled(
+            "per metre",
+            ("ml/min/m", MILLILITRE_A_MINUTE),
+            rows.iter().map(|point| point.leak_rate / across(record, seal)),
+        ),
         Column::new("mean field", "m³/s", of(|point| point.mean_field_leak_rate)),
         Column::percent(
             "drop there",
@@ -104,7 +132,18 @@ pub(super) fn print_leak(state: &LoadingState, leak: &Leak, seal: &Seal) {
         say!("{at}: no channel leads along {}, and the leak rate is 0", axis(seal));
         return;
     };
-    say!("{at}: leak rate {} m³/s", scientific(leak.leak_rate, 4));
+    let throughput = match seal.outlet_pressure() {
+        None => String::new(),
+        // 1 Pa m³/s are 10 mbar l/s.
+        Some(outlet) => {
+            format!(", throughput {} mbar l/s", scientific(10.0 * outlet * leak.leak_rate, 4))
+        }
+    };
+    say!(
+        "{at}: leak rate {} m³/s, {} ml/min{throughput}",
+        scientific(leak.leak_rate, 4),
+        scientific(leak.leak_rate / MILLILITRE_A_MINUTE, 4)
+    );
     say!(
         "  narrowest at node ({}, {}), where the gap is {}: {:.1} % of the pressure drop at its cell, {:.1} % of the power in the 9 x 9 cells about it",
         narrowest.node.0,

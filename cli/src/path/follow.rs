@@ -14,8 +14,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::interrupt::Interrupt;
 use super::job::Job;
-use super::joint::Named;
 use super::{Solver, save};
+use crate::conduction::Named;
 use asperity_cli::number::{counted, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::speech;

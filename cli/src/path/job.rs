@@ -259,13 +259,7 @@ impl Job {
 
     /// What they are made of.
     pub(super) fn layering(&self) -> Layering {
-        match &self.bodies.layered {
-            Some(body) => body.layering(),
-            None => match self.boundary() {
-                Boundary::PeriodicX | Boundary::PeriodicY => Layering::SemiPeriodicHalfSpace,
-                Boundary::Free | Boundary::Periodic => Layering::HalfSpace,
-            },
-        }
+        self.bodies.layering(self.boundary())
     }
 
     /// What a joint needs to know of the bodies.

@@ -4,14 +4,15 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::LoadingState;
-use asperity::joint::{Conduction, FeProgram, FeUnits, InterfaceTable};
+use asperity::joint::{FeProgram, FeUnits, InterfaceTable};
 use asperity::kernel::{Layering, Theory};
 use asperity::loading::History;
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::units::{self, Units};
 use clap::{Args, ValueEnum};
 
-use crate::values::{CONDUCTIVITY, LENGTH, RESISTIVITY, positive};
+use crate::conduction::{Conduct, Named};
+use crate::values::{LENGTH, positive};
 
 /// The bodies of a joint.
 pub(super) struct Pair<'a> {
@@ -26,23 +27,8 @@ pub(super) struct Pair<'a> {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Joint")]
 pub(super) struct Joint {
-    /// Add the electrical conductance of the contact to path.csv: resistivities of both bodies, or of one if the other conducts
-    /// perfectly
-    #[arg(long, value_name = "OHM_M", value_delimiter = ',', allow_negative_numbers = true, value_parser = RESISTIVITY.positive())]
-    resistivity: Vec<f64>,
-
-    /// Add the thermal conductance of the contact to path.csv: thermal conductivities of both bodies in W/(m K), or of one if the other
-    /// conducts perfectly
-    #[arg(long, value_name = "W_M_K", value_delimiter = ',', allow_negative_numbers = true, value_parser = CONDUCTIVITY.positive())]
-    conductivity: Vec<f64>,
-
-    /// Thermal conductivity in W/(m K) of what fills the gap, in parallel to the contact: air 0.026
-    #[arg(long, value_name = "W_M_K", allow_negative_numbers = true, value_parser = CONDUCTIVITY.positive(), requires = "conductivity")]
-    gap_conductivity: Option<f64>,
-
-    /// Temperature jump distance of a gas in the gap, the sum of both surfaces: air about 3.7e-7 [default: 0]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "gap_conductivity")]
-    jump_distance: Option<f64>,
+    #[command(flatten)]
+    conduct: Conduct,
 
     /// Write conductance.csv, with bounds for a surface that has more roughness than the grid, of at most this height from valley to peak
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
@@ -90,36 +76,10 @@ impl Program {
     }
 }
 
-/// A conductance with the name of its column.
-pub(super) type Named = (&'static str, Conduction);
-
 impl Joint {
     /// What is to be conducted between bodies of a composite modulus.
     pub(super) fn conductions(&self, e_star: f64) -> Result<Vec<Named>, Failure> {
-        let failed = |error| Failure::new("cannot compute a conductance", error);
-        let mut all = Vec::new();
-        for (option, values) in
-            [("--resistivity", &self.resistivity), ("--conductivity", &self.conductivity)]
-        {
-            if values.len() > 2 {
-                return Err(Failure::request(format!(
-                    "{option} takes the values of one body or of two"
-                )));
-            }
-        }
-        if !self.resistivity.is_empty() {
-            let sum = self.resistivity.iter().sum();
-            let current = Conduction::electrical(e_star, sum).map_err(failed)?;
-            all.push((current.carrier().column(), current));
-        }
-        if !self.conductivity.is_empty() {
-            let sum = self.conductivity.iter().map(|conductivity| 1.0 / conductivity).sum();
-            let mut heat = Conduction::thermal(e_star, sum).map_err(failed)?;
-            if let Some(gap) = self.gap_conductivity {
-                heat = heat.with_gap(gap, self.jump_distance.unwrap_or(0.0)).map_err(failed)?;
-            }
-            all.push((heat.carrier().column(), heat));
-        }
+        let all = self.conduct.conductions(e_star)?;
         if self.unresolved_roughness.is_some() && all.is_empty() {
             return Err(Failure::request(
                 "--unresolved-roughness bounds a conductance: give --resistivity or --conductivity too",

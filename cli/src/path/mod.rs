@@ -37,6 +37,7 @@ use asperity_cli::{answer, note, panel, say, speech};
 use clap::ArgMatches;
 use nalgebra::DMatrix;
 
+use crate::conduction::Named;
 use crate::ensemble::Member;
 use crate::report;
 use crate::settings::Settings;
@@ -44,7 +45,6 @@ use expected::Expected;
 use follow::{Followed, PathFile};
 use interrupt::Interrupt;
 use job::Job;
-use joint::Named;
 pub(crate) use options::Options;
 
 /// The path, whatever updater it has.
@@ -182,7 +182,7 @@ fn follow_one(
                 .add_unloading_stiffness(&mut states)
                 .map_err(|error| Failure::new("cannot compute the stiffness on unloading", error))
                 .and_then(|()| {
-                    let conductions = (conductions, job.layering());
+                    let conductions = (conductions.clone(), job.layering());
                     PathFile::write_whole(&options.out, edge, conductions, &states)
                 }),
         );
@@ -203,8 +203,8 @@ fn follow_one(
         outcome.written(kept);
     }
     outcome.note(match options.json {
-        true => object::print(&job, &mut solver, &states, seconds),
-        false => table::print(&job, &mut solver, &states, seconds),
+        true => object::print(&job, &mut solver, &states, (&conductions, seconds)),
+        false => table::print(&job, &mut solver, &states, (&conductions, seconds)),
     });
     if options.unload {
         outcome.all_written(unloading::write(&job, &mut solver, &options.out));

@@ -9,18 +9,30 @@ use super::Solver;
 use super::job::Job;
 use super::moments;
 use super::table::{corrected_areas, reason, verify, warnings};
+use crate::conduction::{Named, conductances};
 
 /// Prints the end of the path as one line, with the states that were asked for, and checks it as the table does.
 pub(super) fn print(
     job: &Job,
     solver: &mut Solver,
     states: &[LoadingState],
-    seconds: f64,
+    (conductions, seconds): (&[Named], f64),
 ) -> Result<(), Failure> {
     let failed = |error| Failure::new("cannot compute the last state", error);
     let corrected = corrected_areas(job, states).map_err(failed)?;
     let area = |state: &LoadingState| corrected.get(state.step - 1).copied();
     let greatest = solver.max_pressure().map_err(failed)?;
+    let scalars = |state: Option<&LoadingState>, greatest, corrected_area| {
+        let mut object = scalars(state, greatest, corrected_area);
+        if let Some(state) = state {
+            let found = conductances(conductions, &state.contact, job.layering());
+            let named = found
+                .into_iter()
+                .map(|(carrier, value)| (carrier.column().to_string(), json!(value)));
+            object.extend(named);
+        }
+        object
+    };
     let mut object = scalars(states.last(), greatest, corrected.last().copied());
     object.insert("states".to_string(), json!(states.len()));
     object.insert("ended_by".to_string(), json!(solver.end().map(reason)));

@@ -7,6 +7,7 @@ use asperity::{Certificate, Error, LoadingState, Warning};
 use super::Solver;
 use super::job::Job;
 use super::moments;
+use crate::conduction::{Named, conductances};
 use crate::resolution::Resolution;
 use crate::state_table::{self, Row};
 use asperity_cli::number::{counted, quantity, scientific};
@@ -22,7 +23,7 @@ pub(super) fn print(
     job: &Job,
     solver: &mut Solver,
     states: &[LoadingState],
-    seconds: f64,
+    (conductions, seconds): (&[Named], f64),
 ) -> Result<(), Failure> {
     let Some(last) = states.last() else {
         return Ok(());
@@ -48,6 +49,7 @@ pub(super) fn print(
             },
             |pressure| pressure.iter().copied().fold(0.0, f64::max),
         ),
+        conductances: conductances(conductions, &state.contact, job.layering()),
         corrected_area: corrected.get(state.step - 1).copied().unwrap_or(f64::NAN),
         yielded: job
             .has_hardness()
