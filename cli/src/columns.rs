@@ -34,6 +34,12 @@ impl Column {
         Self::made(name, (scale, unit.to_string()), values)
     }
 
+    /// Whole numbers.
+    pub(crate) fn counts(name: &'static str, counts: &[u64]) -> Self {
+        let cells = counts.iter().map(ToString::to_string).collect();
+        Self { name, unit: String::new(), cells }
+    }
+
     /// A fraction.
     pub(crate) fn percent(name: &'static str, values: impl Iterator<Item = f64>) -> Self {
         Self::scaled(name, ("%", 0.01), values)

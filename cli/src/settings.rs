@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 
 /// The file in the folder of a path.
 const NAME: &str = "settings.json";
-/// Where the seed of a generated surface is.
-const SEED: &str = "surface.seed";
+/// What members of an ensemble differ in: the seed of a generated surface, or the file of a measured one.
+const OF_MEMBER: [&str; 3] = ["surface.seed", "surface.file", "surface.heights_md5"];
 
 /// Everything that determines a path: surface, half-space, rule, updater, targets, and the program.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +44,8 @@ impl Settings {
         Ok(Self(settings))
     }
 
-    /// `Ok` if the paths of two folders are of the same settings; if they are `members` of an ensemble, but for the seed.
+    /// `Ok` if the paths of two folders are of the same settings; if they are `members` of an ensemble, but for the seed or
+    /// the measured map.
     pub(crate) fn check_same(
         &self,
         name: &str,
@@ -63,7 +64,7 @@ impl Settings {
         keys.dedup();
         let differences: Vec<String> = keys
             .into_iter()
-            .filter(|key| !(members && *key == SEED))
+            .filter(|key| !(members && OF_MEMBER.contains(&key.as_str())))
             .filter(|key| value(&own, key) != value(&others, key))
             .map(|key| {
                 let values = (value(&own, key), value(&others, key));

@@ -23,6 +23,11 @@ pub(crate) struct Row {
 
 /// Prints the rows, and what their columns are.
 pub(crate) fn print(rows: &[Row], nominal_area: f64, periodic: Option<Periodic>) {
+    print_of(&[], rows, nominal_area, periodic);
+}
+
+/// The same with the seed of each row, if there are any.
+pub(crate) fn print_of(seeds: &[u64], rows: &[Row], nominal_area: f64, periodic: Option<Periodic>) {
     let column = |name: &'static str, unit: &'static str, quantity: &dyn Fn(&Row) -> f64| {
         Column::new(name, unit, rows.iter().map(quantity))
     };
@@ -54,6 +59,9 @@ pub(crate) fn print(rows: &[Row], nominal_area: f64, periodic: Option<Periodic>)
             Carrier::Current => ("current", "S/m²"),
         };
         columns.push(column(name, unit, &|row| row.conductances[k].1 / nominal_area));
+    }
+    if !seeds.is_empty() {
+        columns.insert(0, Column::counts("seed", seeds));
     }
     print_columns(&columns);
     say!();

@@ -6,7 +6,9 @@ use std::error::Error;
 use std::fs;
 use std::time::{Duration, Instant};
 
+use asperity::io::write_npy;
 use common::{Scratch, is_refused, output, said};
+use nalgebra::DMatrix;
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -71,6 +73,66 @@ fn mixtures_are_not_gathered() -> Done {
     is_refused(&done, &["seed_3", "seed_1", "half_space", "free", "Love"]);
     assert!(!said(&done).contains("surface.seed"), "{}", said(&done));
     assert!(!folder.join("runs/gather.csv").exists());
+    Ok(())
+}
+
+/// Many paths are told in one table, and gathered in another; the description and what is the same is said once.
+#[test]
+fn many_paths_are_told_in_one_table() -> Done {
+    let folder = Scratch::new("ensemble-table")?;
+    let done =
+        output(&folder.0, "path --nodes 32 --max-area-fraction 0.1 --seeds 4..6 --out runs")?;
+    let told = String::from_utf8(done.stdout.clone())?;
+    let rows = told.lines().skip_while(|line| !line.contains("mean gap")).skip(2).take(3);
+    let seeds: Vec<&str> = rows.filter_map(|row| row.split_whitespace().next()).collect();
+    assert_eq!(seeds, ["4", "5", "6"], "{told}");
+    assert_eq!(told.matches("K_i: interfacial").count(), 1, "{told}");
+    assert_eq!(told.matches("warning: the greatest pressure is").count(), 1, "{told}");
+    assert!(told.contains("(one of 3 paths like it)"), "{told}");
+    assert_eq!(said(&done).matches("half-space free").count(), 1, "{}", said(&done));
+    let gathered = String::from_utf8(output(&folder.0, "gather runs")?.stdout)?;
+    assert!(gathered.contains("means of 3 paths at common loads"), "{gathered}");
+    let table = fs::read_to_string(folder.join("runs/gather.csv"))?;
+    let last: Vec<f64> = table
+        .lines()
+        .last()
+        .ok_or("no line")?
+        .split(',')
+        .map(str::parse)
+        .collect::<Result<_, _>>()?;
+    let shown = gathered.lines().skip_while(|line| !line.contains("mean gap")).skip(2);
+    let shown: Vec<&str> = shown.take_while(|line| !line.is_empty()).collect();
+    let shown: Vec<f64> = shown
+        .last()
+        .ok_or("no row")?
+        .split_whitespace()
+        .map(str::parse)
+        .collect::<Result<_, _>>()?;
+    // Area and its spread in per cent.
+    assert!((shown[1] / (100.0 * last[1]) - 1.0).abs() < 1e-3, "{gathered}");
+    assert!((shown[2] / (100.0 * last[2] / last[1]) - 1.0).abs() < 1e-3, "{gathered}");
+    Ok(())
+}
+
+/// Maps of one specimen make a mean as seeds do, if all else is the same.
+#[test]
+fn measured_maps_of_one_specimen_are_gathered() -> Done {
+    let folder = Scratch::new("ensemble-maps")?;
+    for (name, shift) in [("1", 0), ("2", 5)] {
+        let map = DMatrix::from_fn(16, 16, |ix, iy| {
+            1e-7 * f64::from((ix * ix + 3 * iy + shift) as u32 % 11)
+        });
+        write_npy(folder.join(&format!("{name}.npy")), &map)?;
+        let line = format!(
+            "path --surface {name}.npy --side 1mm --material steel --at 5MPa --out maps/{name}"
+        );
+        assert!(output(&folder.0, &line)?.status.success());
+    }
+    let told = String::from_utf8(output(&folder.0, "gather maps")?.stdout)?;
+    assert!(told.contains("means of 2 paths"), "{told}");
+    let other = "path --surface 1.npy --side 2mm --material steel --at 5MPa --out maps/3";
+    assert!(output(&folder.0, other)?.status.success());
+    is_refused(&output(&folder.0, "gather maps")?, &["grid.sides"]);
     Ok(())
 }
 

@@ -79,8 +79,8 @@ pub enum Warning {
 /// between the nodes the counted area was 21 % too large on average, and up to 42 %, with 12 to 15 nodes in contact; 13 % and
 /// 32 % with 16 to 23; 8 % and 17 % with 32 to 47.
 const EXCESS: f64 = 0.15;
-/// Nodes that a single patch has at least: the greatest pressure of a ball whose contact had 32 to 47 was up to 10 % off.
-const FEW_NODES: usize = 50;
+/// The same of a single patch, all of whose figures depend on it: one of some 50 nodes.
+const EXCESS_OF_ONE: f64 = 0.08;
 /// Pressure over composite modulus: metals yield at a hardness of some 0.01 to 0.03, and polymers at 0.047 (PTFE) to 0.072 (PMMA).
 const METALS: f64 = 0.02;
 const POLYMERS: f64 = 0.05;
@@ -126,7 +126,7 @@ impl Warning {
         }
         let excess = contact_nodes as f64 * grid.cell_area() / edge.corrected_area() - 1.0;
         let is_small =
-            excess > EXCESS || (contact_nodes < FEW_NODES && is_one_patch(contact_map, on)?);
+            excess > EXCESS || (excess > EXCESS_OF_ONE && is_one_patch(contact_map, on)?);
         let small = is_small.then_some(Self::SmallPatches { contact_nodes, excess });
         Ok(small.into_iter().chain(Self::of_edge(pressure, boundary)).collect())
     }

@@ -13,12 +13,16 @@ use asperity_cli::{answer, say, speech};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
+use crate::columns::{self, Column};
 use crate::settings::Settings;
 use table::Table;
 
-/// Mean and standard deviation of the paths of `asperity path --seeds`, at common loads
+/// Rows of the table on the screen.
+const ROWS: usize = 12;
+
+/// Mean and standard deviation of paths, at common loads: of `asperity path --seeds`, or of several maps of one specimen
 ///
-/// Writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png. Unfinished
+/// Maps of one specimen are followed with the same options, each with an --out of its own in one folder. Prints a table, and writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png. Unfinished
 /// folders are ignored.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
@@ -58,7 +62,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let ratio = (last / first).powf(1.0 / steps as f64);
     let loads = (0..=steps).map(|k| (first * ratio.powi(k as i32)).min(last));
     let rows: Vec<Row> = loads.map(|load| Row::at(load, &tables)).collect();
-    say!("{}, from {first:.4e} N to {last:.4e} N", counted(tables.len(), "path"));
+    print(&rows, tables.len());
     if options.json {
         answer!("{}", object(&rows, tables.len()));
     }
@@ -135,6 +139,37 @@ impl Row {
         };
         Self { load, columns: (0..table::COLUMNS.len()).map(column).collect() }
     }
+}
+
+/// Some of the loads for people.
+fn print(rows: &[Row], paths: usize) {
+    say!("means of {} at common loads; ±: standard deviation over mean", counted(paths, "path"));
+    say!();
+    let some =
+        (0..rows.len()).filter(|k| (rows.len() - 1 - k).is_multiple_of(rows.len().div_ceil(ROWS)));
+    let rows: Vec<&Row> = some.map(|k| &rows[k]).collect();
+    let mut columns = vec![Column::new("load", "N", rows.iter().map(|row| row.load))];
+    let shown = [
+        ("area", ""),
+        ("corrected", "m²"),
+        ("approach", "m"),
+        ("mean gap", "m"),
+        ("K", "N/m"),
+        ("K_i", "N/m"),
+    ];
+    for (k, (name, unit)) in shown.into_iter().enumerate() {
+        let means = rows.iter().map(|row| row.columns[k].0);
+        if means.clone().all(f64::is_nan) {
+            continue;
+        }
+        columns.push(match unit {
+            "" => Column::percent(name, means),
+            _ => Column::new(name, unit, means),
+        });
+        columns
+            .push(Column::percent("±", rows.iter().map(|row| row.columns[k].1 / row.columns[k].0)));
+    }
+    columns::print(&columns);
 }
 
 /// For programs.

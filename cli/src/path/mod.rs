@@ -21,6 +21,7 @@ mod options;
 mod parts;
 mod progress;
 mod source;
+mod summary;
 mod table;
 mod unloading;
 mod updater;
@@ -46,6 +47,7 @@ use follow::{Followed, PathFile};
 use interrupt::Interrupt;
 use job::Job;
 pub(crate) use options::Options;
+use summary::Summary;
 
 /// The path, whatever updater it has.
 type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
@@ -60,7 +62,7 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
         if options.dry_run {
             return estimate(options, "");
         }
-        return follow_one(options, given, &interrupt)?.finish();
+        return follow_one(options, given, &interrupt, None)?.finish();
     }
     let there = options.ensemble.there(&options.out)?;
     // What is there must be what would be computed now.
@@ -82,8 +84,9 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
     if options.dry_run {
         return members.next().map_or(Ok(()), |first| estimate(&options.of(&first), " for each"));
     }
+    let mut summary = Summary::default();
     members.try_for_each(|member| {
-        match follow_one(&options.of(&member), given, &interrupt) {
+        match follow_one(&options.of(&member), given, &interrupt, Some(&mut summary)) {
             Err(failure) if failure.code() == interrupt::EXIT_CODE => {
                 member.abandon()?;
                 let seed = member.seed;
@@ -96,13 +99,15 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
         }?
         .finish_quietly()?;
         member.finish()?;
-        say!("\nwrote {}", member.folder.display());
+        note!("wrote {}", member.folder.display());
         Ok(())
-    })
+    })?;
+    summary.print(options.periodic);
+    Ok(())
 }
 
-/// The job, and the conductances that it is asked for, with what looks wrong.
-fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
+/// The job, and the conductances that it is asked for, with what looks wrong unless it has been said before.
+fn prepare(options: &Options, is_first: bool) -> Result<(Job, Vec<Named>), Failure> {
     options.check()?;
     let job = Job::new(options)?;
     if options.unload && !job.has_hardness() {
@@ -110,9 +115,11 @@ fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
             "--unload needs --hardness or --yield: elastic contact goes back through the same states",
         ));
     }
-    note!("{}", job.to_string().trim_end());
-    for warning in job.warnings() {
-        eprintln!("warning: {}", crate::advice::told(&warning));
+    if is_first {
+        note!("{}", job.to_string().trim_end());
+        for warning in job.warnings() {
+            eprintln!("warning: {}", crate::advice::told(&warning));
+        }
     }
     let conductions = options.joint.check(&job.pair())?;
     Ok((job, conductions))
@@ -120,7 +127,7 @@ fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
 
 /// Prints what a path will take.
 fn estimate(options: &Options, of: &str) -> Result<(), Failure> {
-    let (job, _) = prepare(options)?;
+    let (job, _) = prepare(options, true)?;
     let expected = Expected::of(&job, options.unload)?;
     match options.json {
         true => answer!("{}", expected.object()),
@@ -134,8 +141,10 @@ fn follow_one(
     options: &Options,
     given: &ArgMatches,
     interrupt: &Interrupt,
+    summary: Option<&mut Summary>,
 ) -> Result<Outcome, Failure> {
-    let (job, conductions) = prepare(options)?;
+    let is_first = summary.as_ref().is_none_or(|summary| summary.is_empty());
+    let (job, conductions) = prepare(options, is_first)?;
     let begun = SystemTime::now();
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)
@@ -202,9 +211,14 @@ fn follow_one(
     if let Some(kept) = kept {
         outcome.written(kept);
     }
-    outcome.note(match options.json {
-        true => object::print(&job, &mut solver, &states, (&conductions, seconds)),
-        false => table::print(&job, &mut solver, &states, (&conductions, seconds)),
+    let told = (&conductions[..], seconds);
+    outcome.note(match (options.json, summary) {
+        (true, _) => object::print(&job, &mut solver, &states, told),
+        (false, Some(summary)) => {
+            let seed = options.roughness.seed.unwrap_or_default();
+            summary.add((&job, seed), &mut solver, &states, &conductions)
+        }
+        (false, None) => table::print(&job, &mut solver, &states, told),
     });
     if options.unload {
         outcome.all_written(unloading::write(&job, &mut solver, &options.out));

@@ -40,20 +40,13 @@ pub(super) fn print(
     let corrected = corrected_areas(job, states)
         .map_err(|error| Failure::new("cannot compute the corrected contact area", error))?;
     let mut failed = Ok(());
-    let shown = rows(job, states, last).into_iter().map(|state| Row {
-        contact: state.contact,
-        greatest: solver.pressure_at(&state).map_or_else(
-            |error| {
-                failed = Err(Failure::new("cannot compute a pressure for the table", error));
-                f64::NAN
-            },
-            |pressure| pressure.iter().copied().fold(0.0, f64::max),
-        ),
-        conductances: conductances(conductions, &state.contact, job.layering()),
-        corrected_area: corrected.get(state.step - 1).copied().unwrap_or(f64::NAN),
-        yielded: job
-            .has_hardness()
-            .then(|| state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction)),
+    let shown = rows(job, states, last).into_iter().map(|state| {
+        let greatest = solver.pressure_at(&state).map(|pressure| pressure.max());
+        let greatest = greatest.unwrap_or_else(|error| {
+            failed = Err(Failure::new("cannot compute a pressure for the table", error));
+            f64::NAN
+        });
+        row(job, &state, greatest, &corrected, conductions)
     });
     let shown: Vec<Row> = shown.collect();
     state_table::print(&shown, job.grid().nominal_area(), job.periodic());
@@ -67,6 +60,26 @@ pub(super) fn print(
         .map_err(|error| Failure::new("cannot compute the residuals of the last state", error))?;
     exactness(&certificate, last);
     verify(solver)
+}
+
+/// A state with its greatest pressure, from the corrected areas of all.
+pub(super) fn row(
+    job: &Job,
+    state: &LoadingState,
+    greatest: f64,
+    corrected: &[f64],
+    conductions: &[Named],
+) -> Row {
+    let plastic = state.contact.plastic;
+    Row {
+        contact: state.contact,
+        greatest,
+        corrected_area: corrected.get(state.step - 1).copied().unwrap_or(f64::NAN),
+        yielded: job
+            .has_hardness()
+            .then(|| plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction)),
+        conductances: conductances(conductions, &state.contact, job.layering()),
+    }
 }
 
 /// `Ok` if the last state fulfils the conditions of contact.
