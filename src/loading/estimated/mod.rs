@@ -12,8 +12,6 @@ mod states;
 #[cfg(test)]
 mod window_tests;
 #[cfg(test)]
-mod wrong_complements;
-#[cfg(test)]
 mod wrong_matrices;
 
 use super::contradiction::{Slack, contradiction};
