@@ -156,8 +156,7 @@ pub(super) fn enqueue(
         let bounds = walk.pass(node, event.kind);
         let [way, depth, work] = so_far.since(&first).parts_of(&open.since(&first));
         let [way_of_load, ..] = so_far.since(&known).parts_of(&open.since(&known));
-        scalars.pin(&walked, &own, [way_of_load, way]);
-        scalars.pin_plastic(&walked, &own, [depth, work]);
+        scalars.pin(&walked, &own, [way_of_load, way, depth, work]);
         scalars.clamp_load(bounds);
         scalars.clamp_mean_gap();
         walk.take(&mut scalars, rates[k]);
@@ -268,10 +267,8 @@ mod tests {
         let begun = at(&[0], 1.0)?;
         let mut run = at(&[0, 2, 4], 3.0)?;
         // The second event is known to be at 1.5; at 1.75 the load lacks what a quarter of a metre of 2/4 N/m gives.
-        let settled = Settled {
-            events: test_chain::events(&[(0, 0.5), (1, 1.75)]),
-            errors: vec![0.0; 2],
-        };
+        let settled =
+            Settled { events: test_chain::events(&[(0, 0.5), (1, 1.75)]), errors: vec![0.0; 2] };
         let window = test_chain::apart(&[(2, 0.5), (4, 1.5)], 9.0);
         let rates = [begun.scalars.rates(), run.scalars.rates()];
         enqueue(&mut run, (window, &settled), passed(&begun), (rates, &tolerances(0.0)))?;
