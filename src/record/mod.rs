@@ -326,7 +326,7 @@ impl LoadingRecord {
     /// # Errors
     ///
     /// Those of [`Self::make_kernel`] and of [`LoadingBuilder::build`](crate::loading::LoadingBuilder::build).
-    pub fn replay(&self) -> Result<LoadingSolver<ConjugateGradient>, Error> {
+    pub fn replay(&self) -> Result<LoadingPath, Error> {
         self.replay_on(&self.make_kernel()?)
     }
 
@@ -335,13 +335,10 @@ impl LoadingRecord {
     /// # Errors
     ///
     /// [`Error::WrongKernel`] if it is another one, and as above.
-    pub fn replay_on(
-        &self,
-        kernel: &dyn InfluenceKernel,
-    ) -> Result<LoadingSolver<ConjugateGradient>, Error> {
+    pub fn replay_on(&self, kernel: &dyn InfluenceKernel) -> Result<LoadingPath, Error> {
         let hardness = self.hardness_map()?;
         let builder = self.builder(kernel, hardness.as_ref());
-        let mut solver = builder.updater(ConjugateGradient::new()).build()?;
+        let mut solver = builder.updater(ConjugateGradient::new()).build()?.into_path();
         self.kernel.check(solver.problem().table())?;
         solver.restore(&self.history)?;
         Ok(solver)
