@@ -101,11 +101,11 @@ impl Seal {
 impl Seal {
     /// The place of the first state at which no channel wider than the least gap is left, up to the `closing` by contact: gaps only
     /// become narrower under load.
-    fn closing_by_gap<U: LinearUpdater>(
+    fn closing_by_gap(
         &self,
         states: &[LoadingState],
         closing: Option<usize>,
-        path: &mut LoadingSolver<U>,
+        path: &mut LoadingPath,
     ) -> Result<Option<usize>, Error> {
         // Where nodes leave the contact gaps widen again.
         let widens = || states.iter().any(|state| state.event == ContactEvent::Release);
