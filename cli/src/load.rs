@@ -131,6 +131,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             .map_err(|error| Failure::new("cannot compute a conductance", error))?;
     }
     let surface = options.reading.surface(&options.surface)?;
+    Reading::check_row(&surface, boundary(options.periodic))?;
     let hardness = options.hardness.of(&bodies)?;
     note!("bodies     {bodies}");
     if let Some(hardness) = hardness {
@@ -230,7 +231,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if !rows.is_empty() {
         outcome.written(outcome::write(&options.out.join("load.csv"), table));
         say!();
-        state_table::print(&rows, grid.nominal_area(), options.periodic);
+        state_table::print(&rows, &grid, options.periodic);
     }
     warnings.iter().for_each(speech::warn);
     if options.json {

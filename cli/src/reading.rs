@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use asperity::SurfaceError;
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions, TextLayout};
 use asperity::surface::{Topography, Trend, Warning};
+use asperity::{Boundary, SurfaceError};
 use asperity_cli::note;
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{Failure, of_program};
@@ -166,6 +166,20 @@ impl Reading {
         let (sx, sy) = surface.trend(Trend::Plane).slopes();
         note!("tilt       {sx:.2e} along x, {sy:.2e} along y");
         self.prepare(surface).map_err(failed)
+    }
+
+    /// `Ok` unless a surface is one row of nodes that does not repeat across: a strip as narrow as a cell, which nobody means.
+    pub(crate) fn check_row(surface: &Topography, boundary: Boundary) -> Result<(), Failure> {
+        let ((nx, ny), [x_repeats, y_repeats]) = (surface.grid().shape(), boundary.repeats());
+        let across = match (nx, ny) {
+            (_, 1) if !y_repeats => "y",
+            (1, _) if !x_repeats => "x",
+            _ => return Ok(()),
+        };
+        Err(Failure::request(format!(
+            "a profile is one row of nodes, which has to repeat across: give --periodic {across}, as in line contact, or --periodic love, \
+             if it repeats along its length as well"
+        )))
     }
 
     /// Whether missing nodes are to be filled.

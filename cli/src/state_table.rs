@@ -1,5 +1,6 @@
 //! The table of states that people read: the same for paths and single loads.
 
+use asperity::Grid;
 use asperity::contact::ContactState;
 use asperity::joint::Carrier;
 use asperity_cli::half_space::{Periodic, is_of_mean_planes};
@@ -22,12 +23,13 @@ pub(crate) struct Row {
 }
 
 /// Prints the rows, and what their columns are.
-pub(crate) fn print(rows: &[Row], nominal_area: f64, periodic: Option<Periodic>) {
-    print_of(&[], rows, nominal_area, periodic);
+pub(crate) fn print(rows: &[Row], grid: &Grid, periodic: Option<Periodic>) {
+    print_of(&[], rows, grid, periodic);
 }
 
 /// The same with the seed of each row, if there are any.
-pub(crate) fn print_of(seeds: &[u64], rows: &[Row], nominal_area: f64, periodic: Option<Periodic>) {
+pub(crate) fn print_of(seeds: &[u64], rows: &[Row], grid: &Grid, periodic: Option<Periodic>) {
+    let nominal_area = grid.nominal_area();
     let column = |name: &'static str, unit: &'static str, quantity: &dyn Fn(&Row) -> f64| {
         Column::new(name, unit, rows.iter().map(quantity))
     };
@@ -52,6 +54,15 @@ pub(crate) fn print_of(seeds: &[u64], rows: &[Row], nominal_area: f64, periodic:
     // A periodic half-space has no contact stiffness.
     let has_k = rows.iter().any(|row| row.contact.contact_stiffness.is_some());
     columns.retain(|column| has_k || column.name() != "K");
+    // A profile is as wide as one likes.
+    let width = match (grid.shape(), grid.sides()) {
+        ((_, 1), (_, ly)) => Some(ly),
+        ((1, _), (lx, _)) => Some(lx),
+        _ => None,
+    };
+    if let Some(width) = width {
+        columns.insert(1, column("per width", "N/m", &|row| row.contact.load / width));
+    }
     let carriers = rows.first().map_or(&[][..], |row| &row.conductances);
     for (k, (carrier, _)) in carriers.iter().enumerate() {
         let (name, unit) = match carrier {

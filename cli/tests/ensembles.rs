@@ -119,9 +119,8 @@ fn many_paths_are_told_in_one_table() -> Done {
 fn measured_maps_of_one_specimen_are_gathered() -> Done {
     let folder = Scratch::new("ensemble-maps")?;
     for (name, shift) in [("1", 0), ("2", 5)] {
-        let map = DMatrix::from_fn(16, 16, |ix, iy| {
-            1e-7 * f64::from((ix * ix + 3 * iy + shift) as u32 % 11)
-        });
+        let height = |ix: usize, iy: usize| 1e-7 * (1.7 * (7 * ix + 13 * iy + shift) as f64).sin();
+        let map = DMatrix::from_fn(16, 16, height);
         write_npy(folder.join(&format!("{name}.npy")), &map)?;
         let line = format!(
             "path --surface {name}.npy --side 1mm --material steel --at 5MPa --out maps/{name}"

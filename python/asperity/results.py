@@ -27,6 +27,7 @@ __all__ = [
     "Material",
     "Percolation",
     "PowerSpectrum",
+    "ProfileParameters",
     "SelfAffineFit",
     "SlipCycle",
     "SlipState",
@@ -226,6 +227,36 @@ class Estimate:
 
     value: float
     standard_error: float
+
+
+@dataclass(frozen=True)
+class ProfileParameters:
+    """Parameters of a profile by ISO 21920: of its roughness with a cut-off wavelength, of the primary profile without one.
+
+    Attributes
+    ----------
+    cutoff : float or None
+        Cut-off wavelength [m].
+    evaluation_length : float
+        [m]
+    ra, rq, rz, rt : float
+        Arithmetical mean, root mean square, maximum and total height [m]. The maximum height is the mean over sections as long as the
+        cut-off.
+    rsk, rku : float
+        Skewness and kurtosis.
+    rsm : float or None
+        Mean spacing of the elements [m]; None where there are fewer than two.
+    """
+
+    cutoff: float | None
+    evaluation_length: float
+    ra: float
+    rq: float
+    rz: float
+    rt: float
+    rsk: float
+    rku: float
+    rsm: float | None
 
 
 @dataclass(frozen=True)

@@ -266,3 +266,20 @@ def test_generators_are_those_of_the_library() -> None:
     with pytest.raises(asp.AsperityError) as refused:
         asp.self_affine((40, 50), 1e-3, rms_height=1e-6, **{**settings, "short_cutoff": 1e-6})
     assert refused.value.kind == "CutoffBelowGrid"
+
+
+def test_profiles() -> None:
+    """A sine of 40 waves: Ra = 2 A / pi, Rq = A / sqrt(2), RSm is its length."""
+    x = np.arange(4000) * 0.25e-6
+    text = "".join(f"{1e3 * a:.17g} {z:.17g}\n" for a, z in zip(x, 0.5 * np.sin(2 * np.pi * x / 25e-6)))
+    profile = asp.read(text.encode(), height_unit="um", lateral_unit="mm", name="sine.txt")
+    assert profile.z.shape == (1, 4000)
+    for cutoff in [None, 0.25e-3]:
+        found = profile.profile_parameters(cutoff)
+        assert found.cutoff == cutoff
+        assert found.ra == pytest.approx(0.5e-6 * 2 / np.pi, rel=0.02)
+        assert found.rq == pytest.approx(0.5e-6 / np.sqrt(2), rel=0.02)
+        assert found.rsm == pytest.approx(25e-6, rel=0.01)
+    with pytest.raises(asp.AsperityError) as refused:
+        asp.example_surface(nodes=32).profile_parameters()
+    assert refused.value.value == 32

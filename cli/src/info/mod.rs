@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use asperity::Warning;
 use asperity::io::MeasuredSurface;
-use asperity::surface::{self, Estimate, HeightMap, Topography, Trend, Window};
+use asperity::surface::{self, Estimate, HeightMap, ProfileParameters, Topography, Trend, Window};
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{Failure, Outcome, of_program};
 use asperity_cli::panel;
@@ -19,6 +19,7 @@ use serde_json::{Value, json};
 
 use crate::advice;
 use crate::reading::Reading;
+use crate::values::LENGTH;
 use summary::Whole;
 
 /// Greatest Hurst exponent that a fit is told with: above 1, but for its error, a map is not self-affine.
@@ -37,8 +38,12 @@ pub(crate) struct Options {
     #[command(flatten)]
     reading: Reading,
 
+    /// Cut-off wavelength of the roughness of a profile, as 0.8mm: its parameters are Ra, Rz, ... then [default: Pa, Pz, ... of the primary profile]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    cutoff: Option<f64>,
+
     /// Print one JSON object with format, title, understood, nx, ny, side_x, side_y, missing (in the file), min, max, mean, sa, sq, sz,
-    /// rms_gradient, notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
+    /// rms_gradient, profile (of one row: cutoff, evaluation_length, ra, rq, rz, rt, rsk, rku, rsm), notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
     #[arg(long)]
     json: bool,
 
@@ -54,10 +59,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let measured = options.reading.measured(&options.file)?;
     let whole = Whole::of(&measured, &options.reading)?;
+    let profile = profile(&whole, options.cutoff)?;
     if options.json {
-        answer!("{}", object(&measured, &whole));
+        answer!("{}", object(&measured, &whole, profile.as_ref()));
     } else {
-        print(options, &measured, &whole)?;
+        print(options, &measured, &whole, profile.as_ref())?;
     }
     let directory = match (&options.out, options.json) {
         (Some(directory), _) => directory.clone(),
@@ -84,7 +90,7 @@ fn warnings(measured: &MeasuredSurface, whole: &Whole) -> Vec<String> {
 }
 
 /// One object for programs.
-fn object(measured: &MeasuredSurface, whole: &Whole) -> Value {
+fn object(measured: &MeasuredSurface, whole: &Whole, profile: Option<&ProfileParameters>) -> Value {
     let (nx, ny) = measured.heights.shape();
     let side = |n: usize, cell: f64| n as f64 * cell;
     let map = whole.surface.map();
@@ -104,13 +110,29 @@ fn object(measured: &MeasuredSurface, whole: &Whole) -> Value {
         "sq": map.rms_height(),
         "sz": map.peak_to_valley(),
         "rms_gradient": whole.rms_gradient(),
+        "profile": profile.map(|profile| json!({
+            "cutoff": profile.cutoff,
+            "evaluation_length": profile.evaluation_length,
+            "ra": profile.ra,
+            "rq": profile.rq,
+            "rz": profile.rz,
+            "rt": profile.rt,
+            "rsk": profile.rsk,
+            "rku": profile.rku,
+            "rsm": profile.rsm,
+        })),
         "notes": measured.notes.iter().map(|note| of_program(note)).collect::<Vec<_>>(),
         "warnings": warnings(measured, whole),
     })
 }
 
 /// Lines for people.
-fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result<(), Failure> {
+fn print(
+    options: &Options,
+    measured: &MeasuredSurface,
+    whole: &Whole,
+    profile: Option<&ProfileParameters>,
+) -> Result<(), Failure> {
     let length = |value: f64| quantity(value, "m", 5);
     say!("file          {}", options.file.display());
     say!("found         {measured}");
@@ -162,6 +184,9 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
         levelled.map().skewness(),
         levelled.map().kurtosis()
     );
+    if let Some(profile) = profile {
+        print_profile(profile);
+    }
     if whole.has_size {
         spectrum(&levelled);
     } else {
@@ -173,6 +198,43 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
         say!("warning       {warning}");
     }
     Ok(())
+}
+
+/// The parameters of a profile: of a surface of one row whose length is known.
+fn profile(whole: &Whole, cutoff: Option<f64>) -> Result<Option<ProfileParameters>, Failure> {
+    let is_profile = whole.surface.grid().ny() == 1 && whole.has_size;
+    if !is_profile {
+        return match cutoff {
+            None => Ok(None),
+            Some(_) => Err(Failure::request(
+                "--cutoff is for a profile, a row of heights whose length is known",
+            )),
+        };
+    }
+    let found = whole.surface.profile_parameters(cutoff);
+    found
+        .map(Some)
+        .map_err(|error| Failure::new("cannot compute the roughness of the profile", error))
+}
+
+/// In the symbols of ISO 21920: R behind a filter, P without one.
+fn print_profile(profile: &ProfileParameters) {
+    let length = |value: f64| quantity(value, "m", 4);
+    let (letter, of) = match profile.cutoff {
+        Some(cutoff) => ("R", format!("roughness, λc {}", length(cutoff))),
+        None => ("P", "primary profile; --cutoff 0.8mm for R-parameters".to_string()),
+    };
+    let spacing = profile.rsm.map_or_else(|| "none".to_string(), length);
+    say!(
+        "profile       {letter}a {}, {letter}q {}, {letter}z {}, {letter}t {}, {letter}Sm {spacing}, {letter}sk {:.3}, {letter}ku {:.3}",
+        length(profile.ra),
+        length(profile.rq),
+        length(profile.rz),
+        length(profile.rt),
+        profile.rsk,
+        profile.rku
+    );
+    say!("              ISO 21920: {of}, evaluated on {}", length(profile.evaluation_length));
 }
 
 /// The self-affine spectrum that fits.

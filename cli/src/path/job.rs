@@ -24,6 +24,7 @@ use super::source::{fingerprint, read};
 use super::updater::{Updater, no_room};
 use crate::at::At;
 use crate::elasticity::Bodies;
+use crate::reading::Reading;
 use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::note;
@@ -75,6 +76,9 @@ impl Job {
             None => generate(options)?,
         };
         let grid = *surface.grid();
+        if options.surface.is_some() {
+            Reading::check_row(&surface, options.boundary())?;
+        }
         let hardness = hardness(options, &grid)?;
         Ok(Self {
             name,

@@ -1,6 +1,6 @@
 //! The last states of many paths, in one table.
 
-use asperity::LoadingState;
+use asperity::{Grid, LoadingState};
 use asperity_cli::half_space::Periodic;
 use asperity_cli::number::counted;
 use asperity_cli::outcome::Failure;
@@ -17,7 +17,7 @@ use crate::state_table::{self, Row};
 pub(super) struct Summary {
     rows: Vec<Row>,
     seeds: Vec<u64>,
-    nominal_area: f64,
+    grid: Option<Grid>,
     /// Each warning with how many paths have one that differs in its numbers alone.
     warnings: Vec<(String, usize)>,
 }
@@ -42,7 +42,7 @@ impl Summary {
         let greatest = solver.max_pressure().map_err(failed)?;
         self.rows.push(row(job, last, greatest, &corrected, conductions));
         self.seeds.push(seed);
-        self.nominal_area = job.grid().nominal_area();
+        self.grid = Some(job.grid());
         for warning in warnings(job, solver)? {
             match self.warnings.iter_mut().find(|(other, _)| kind(other) == kind(&warning)) {
                 Some((_, count)) => *count += 1,
@@ -54,11 +54,9 @@ impl Summary {
 
     /// Prints the table, if there is anything in it.
     pub(super) fn print(&self, periodic: Option<Periodic>) {
-        if self.rows.is_empty() {
-            return;
-        }
+        let Some(grid) = &self.grid else { return };
         say!("\nthe last state of each path");
-        state_table::print_of(&self.seeds, &self.rows, self.nominal_area, periodic);
+        state_table::print_of(&self.seeds, &self.rows, grid, periodic);
         for (warning, count) in &self.warnings {
             let of = counted(*count, "path");
             speech::warn(match count {

@@ -49,7 +49,7 @@ pub(super) fn print(
         row(job, &state, greatest, &corrected, conductions)
     });
     let shown: Vec<Row> = shown.collect();
-    state_table::print(&shown, job.grid().nominal_area(), job.periodic());
+    state_table::print(&shown, &job.grid(), job.periodic());
     failed?;
     let resolution = Resolution::of(&solver.contact_map(), &job.grid(), job.boundary())
         .map_err(|error| Failure::new("cannot find the patches of the last state", error))?;

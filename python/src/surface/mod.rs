@@ -530,6 +530,26 @@ impl Surface {
         statistics::psd_along(py, self.topography()?, choice::axis(axis)?)
     }
 
+    /// The roughness of a profile, a surface of one row, without its tilt (ISO 21920).
+    ///
+    /// Parameters
+    /// ----------
+    /// cutoff : float, optional
+    ///     Cut-off wavelength [m] of the Gaussian filter: the parameters are those of the roughness, Ra, Rz, ...; without it those of the
+    ///     primary profile, Pa, Pz, ...
+    ///
+    /// Returns
+    /// -------
+    /// results.ProfileParameters
+    #[pyo3(signature = (cutoff=None))]
+    fn profile_parameters<'py>(
+        &self,
+        py: Python<'py>,
+        cutoff: Option<f64>,
+    ) -> Fallible<Bound<'py, PyAny>> {
+        statistics::profile_parameters(py, self.topography()?, cutoff)
+    }
+
     /// Fit a self-affine spectrum with roll-off and cut-offs, with standard errors.
     ///
     /// Level a map that does not repeat and put a `window` on it before.

@@ -76,6 +76,25 @@ fn of_bins<'py>(py: Python<'py>, bins: &[SpectralBin]) -> Fallible<Bound<'py, Py
     })
 }
 
+pub(super) fn profile_parameters<'py>(
+    py: Python<'py>,
+    surface: &Topography,
+    cutoff: Option<f64>,
+) -> Fallible<Bound<'py, PyAny>> {
+    let found = detached(py, || surface.profile_parameters(cutoff))??;
+    result!(py, "ProfileParameters", {
+        cutoff: found.cutoff,
+        evaluation_length: found.evaluation_length,
+        ra: found.ra,
+        rq: found.rq,
+        rz: found.rz,
+        rt: found.rt,
+        rsk: found.rsk,
+        rku: found.rku,
+        rsm: found.rsm,
+    })
+}
+
 pub(super) fn fit_self_affine<'py>(
     py: Python<'py>,
     surface: &Topography,

@@ -30,7 +30,9 @@ pub use missing::{count_missing, fill_missing};
 pub use placement::Axis;
 pub use self_affine::{Amplitude, SelfAffine, Spectrum};
 pub use shapes::{Cone, Cylinder, EllipticParaboloid, FlatPunch, Paraboloid};
-pub use statistics::{Estimate, RadialBins, SelfAffineFit, SpectralBin, SpectralMoments};
+pub use statistics::{
+    Estimate, ProfileParameters, RadialBins, SelfAffineFit, SpectralBin, SpectralMoments,
+};
 pub use sum::Sum;
 pub use topography::{Filter, FittedTrend, Interpolation, Topography, Trend, Window};
 pub use warning::Warning;

@@ -22,6 +22,7 @@ const UNDECLARED: &str = "three columns are taken for points x, y, z unless line
 pub(super) enum Found {
     Matrix(TextLayout),
     Points(List),
+    Profile,
 }
 
 /// Which columns have the points, and the map that they make.
@@ -38,12 +39,9 @@ pub(super) fn of(header: &Header, table: &Table, is_list: bool) -> Result<Found,
         return points(table).map(Found::Points);
     }
     let columns = table.columns;
-    ensure!(
-        columns > 2 || table.rows() <= FEW_ROWS,
-        "{} rows of {columns} numbers are a profile; a surface is a matrix of at least four columns, or a list of points \
-         x, y, z; lines '# Width: 1 mm' and '# Height: 1 mm' make it a matrix",
-        table.rows()
-    );
+    if columns <= 2 && table.rows() > FEW_ROWS {
+        return Ok(Found::Profile);
+    }
     match looks(table) {
         // No heights are coordinates of most of a grid, each once, by chance.
         Looks::Points(list) => Ok(Found::Points(list)),

@@ -8,6 +8,8 @@
 //! Empty cells, `NaN`, `BAD`, `***` and the like are missing. Of the header those lines are understood that Gwyddion writes
 //! over a matrix or a list, in the languages it speaks, and names of columns with units.
 //!
+//! One column, or two, in more than three rows are a profile, which becomes one row of nodes.
+//!
 //! A list is known by names of its columns, by the extension `.xyz`, or by its coordinates; positions in the first row and column
 //! of a matrix by their even steps. Where numbers can be read in several ways, the user has to say which is meant.
 
@@ -20,6 +22,7 @@ mod markers;
 mod matrix;
 mod names;
 mod points;
+mod profile;
 mod quotes;
 mod table;
 mod words;
@@ -92,8 +95,9 @@ fn generic(
             let map = points::map(&columns, &table)?;
             return list(header, Box::new((columns, map)), &table);
         }
+        let of_profile = names.and_then(|line| names::of_profile(line, &table));
         ensure!(
-            !header.ends_with_names,
+            !header.ends_with_names || of_profile.is_some(),
             "the line '{}' above the numbers names columns, but not the {} that there are",
             names.unwrap_or_default(),
             table.columns
@@ -112,6 +116,7 @@ fn generic(
     };
     let layout = match found {
         Found::Points(points) => return list(header, points, &table),
+        Found::Profile => return profile::channel(header, table),
         Found::Matrix(layout) => layout,
     };
     let mut axes = axes::take(&mut table, layout)?;

@@ -80,6 +80,18 @@ impl Columns {
     }
 }
 
+/// The units of a position and a height, as a line of two names says; `None` if it is none.
+pub(super) fn of_profile(line: &str, table: &Table) -> Option<[Option<String>; 2]> {
+    let line = line.trim().trim_start_matches(['#', '%']).trim_matches([' ', '"']);
+    let ways = ways(line, table);
+    let names = ways.into_iter().find(|names| names.len() == table.columns)?;
+    match &names[..] {
+        [height] => Some([None, unit(height)]),
+        [position, height] => Some([unit(position), unit(height)]),
+        _ => None,
+    }
+}
+
 /// The names in a line, in all ways in which they could be parted.
 fn ways(line: &str, table: &Table) -> Vec<Vec<String>> {
     let cells = |separator: &str| -> Vec<String> {

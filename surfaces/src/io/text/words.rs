@@ -27,8 +27,12 @@ pub(super) fn kind(word: &str) -> Option<Kind> {
     }
 }
 
-/// Whether a line could be one of names: it has both an x and a y.
+/// Most words of a line that names x and z, with their units.
+const FEW: usize = 6;
+
+/// Whether a line could be one of names: it has both an x and a y, or little else than an x and a z.
 pub(super) fn could_be(line: &str) -> bool {
     let has = |wanted| words(line).any(|word| kind(word) == Some(wanted));
-    has(Kind::X) && has(Kind::Y)
+    let is_short = || !line.contains([':', '=']) && words(line).count() <= FEW;
+    has(Kind::X) && (has(Kind::Y) || has(Kind::Z) && is_short())
 }

@@ -14,9 +14,11 @@ mod foreign_tests;
 mod full_contact;
 mod moments;
 mod power;
+mod profile;
 #[cfg(test)]
 mod tests;
 
 pub use self::fit::{Estimate, SelfAffineFit};
 pub use self::moments::SpectralMoments;
 pub use self::power::{RadialBins, SpectralBin};
+pub use self::profile::ProfileParameters;

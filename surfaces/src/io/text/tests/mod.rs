@@ -1,4 +1,5 @@
 mod points;
+mod profiles;
 
 use std::path::Path;
 

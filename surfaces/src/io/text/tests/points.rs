@@ -102,8 +102,6 @@ fn what_is_no_grid_is_refused() {
         ("0 0 1\n1 0 2\n0 1 3\n1 1 4\n1 1 5\n", "point 5 at x = 1, y = 1 is not the first"),
         ("0 0 1\n0 1 2\n0 2 3\n0 3 4\n", "all points have x = 0: a profile"),
         ("0 0 1\nNaN 0 2\n0 1 3\n1 1 4\n", "point 2 has no x"),
-        ("1 2\n2 3\n3 4\n4 5\n", "are a profile"),
-        ("1\n2\n3\n4\n", "are a profile"),
         ("0 0 1\n1 0 1\n0 1 1\n.3 .7 1\n", "'# Width: 1 mm'"),
     ] {
         assert_refused(text, expected);

@@ -1,0 +1,57 @@
+//! Profiles: one column, or two.
+
+use super::{MISSING, TestResult, assert_refused, parsed, shown};
+use crate::io::ReadOptions;
+
+#[test]
+fn columns_are_profiles() -> TestResult {
+    // One column has no positions.
+    let channel = parsed("1\n2\n\n4\n8\n".replace("\n\n", "\n"))?;
+    assert_eq!((channel.shape, channel.cell), ((4, 1), None));
+    assert_eq!(shown(&channel, |z| z), [1.0, 2.0, 4.0, 8.0]);
+    // Two have, in any unit and from either end.
+    for text in ["0 5\n0.5 6\n1 NaN\n1.5 8\n", "1.5 8\n1 NaN\n0.5 6\n0 5\n"] {
+        let channel = parsed(text)?;
+        assert_eq!((channel.shape, channel.cell), ((4, 1), Some((0.5, 0.5))));
+        assert_eq!(shown(&channel, |z| z), [5.0, 6.0, MISSING, 8.0]);
+        assert!(channel.notes.is_empty(), "{:?}", channel.notes);
+    }
+    let named = "# x [mm]; z [µm]\n0;5\n0.5;6\n1;7\n1.5;9\n";
+    let measured = ReadOptions::new().read_bytes(named, "profile.csv")?;
+    assert_eq!(measured.cell, Some((0.5e-3, 0.5e-3)));
+    for (height, micrometres) in measured.heights.iter().zip([5.0, 6.0, 7.0, 9.0]) {
+        assert!((height / (1e-6 * micrometres) - 1.0).abs() < 1e-15, "{height}");
+    }
+    assert!(measured.understood.starts_with("a profile of 4 points, a position and a height"));
+    Ok(())
+}
+
+/// A straight line stays one on even steps, and what happened is said; where a height is missing its neighbours between are too.
+#[test]
+fn uneven_steps_are_made_even() -> TestResult {
+    let positions = [0.0, 1.0, 1.5, 3.0, 4.0, 6.0, 6.5, 7.0];
+    let line = |x: f64| 2.0 * x - 3.0;
+    let text: String = positions.iter().map(|x| format!("{x} {}\n", line(*x))).collect();
+    let channel = parsed(&text)?;
+    assert_eq!((channel.shape, channel.cell), ((8, 1), Some((1.0, 1.0))));
+    for (k, value) in channel.values.iter().enumerate() {
+        assert!((value - line(k as f64)).abs() < 1e-12, "{k}: {value}");
+    }
+    assert!(
+        channel.notes.iter().any(|note| note.contains("up to 1.000 steps off")),
+        "{:?}",
+        channel.notes
+    );
+    let holed = parsed(text.replace("3 3\n", "3 NaN\n"))?;
+    let missing = holed.values.iter().filter(|value| value.is_nan()).count();
+    assert_eq!(missing, 2, "{:?}", holed.values);
+    Ok(())
+}
+
+#[test]
+fn positions_that_go_back_are_refused() {
+    for text in ["0 1\n1 2\n1 3\n2 4\n", "0 1\n2 2\n1 3\n3 4\n"] {
+        assert_refused(text, "rise or fall from row to row, but row 3 has 1 behind");
+    }
+    assert_refused("0 1\nNaN 2\n1 3\n3 4\n", "row 2 has NaN behind 0");
+}
