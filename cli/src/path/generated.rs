@@ -1,83 +1,19 @@
-//! A generated surface, with the roughness that a command line asks for.
+//! A generated surface.
 
 use asperity::surface::{Amplitude, SelfAffine, Topography};
 use asperity::{Grid, LoadingSolver, SurfaceError};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
-use clap::Args;
 use serde_json::{Value, json};
 
 use super::options::Options;
 use super::source::Made;
-use crate::values::{LENGTH, fraction, positive};
 
 /// Side \[m\] and nodes a side of the generated surface, its seed, and cells of its shortest wave, if not given.
 const SIDE: f64 = 1e-2;
 const NODES: usize = 256;
 const SEED: u64 = 1;
 const CELLS_OF_SHORTEST_WAVE: f64 = 8.0;
-
-/// Its roughness: that of Zhang et al. (2020), Table 1, but for what is given.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Generated surface")]
-pub(super) struct Roughness {
-    /// Nodes along each side [default: 256]
-    #[arg(long, value_name = "N")]
-    nodes: Option<usize>,
-
-    /// Seed [default: 1]
-    #[arg(long, value_name = "S")]
-    pub(super) seed: Option<u64>,
-
-    /// Root mean square height [default: 50 µm, unless --rms-gradient is given]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with_all = ["surface", "rms_gradient"])]
-    sq: Option<f64>,
-
-    /// Root mean square gradient, in place of --sq
-    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
-    rms_gradient: Option<f64>,
-
-    /// Hurst exponent [default: 0.8]
-    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = fraction, conflicts_with = "surface")]
-    hurst: Option<f64>,
-
-    /// Roll-off: the wavelength above which the spectrum is flat [default: 2.5 mm]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
-    rolloff: Option<f64>,
-
-    /// Shortest wavelength [default: eight cells, and without --rolloff not less than 78.125 µm]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
-    short_cutoff: Option<f64>,
-
-    /// Waves are so many times as long along x as they are along y; the other lengths are those along y [default: 1]
-    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
-    anisotropy: Option<f64>,
-}
-
-impl Roughness {
-    /// That of another seed.
-    pub(super) fn with_seed(&self, seed: u64) -> Self {
-        Self { seed: Some(seed), ..self.clone() }
-    }
-
-    /// Whether nothing but nodes and a seed is given.
-    fn is_example(&self) -> bool {
-        let lengths = self.sq.or(self.rolloff).or(self.short_cutoff);
-        lengths.or(self.rms_gradient).or(self.hurst).or(self.anisotropy).is_none()
-    }
-
-    /// Height or gradient; of waves that are stretched, so that the gradient is that of the surface then.
-    fn amplitude(&self, default: Amplitude, stretch: f64) -> Amplitude {
-        match (self.sq, self.rms_gradient) {
-            (Some(height), _) => Amplitude::RmsHeight(height),
-            // Half of the mean square is along x, and falls with the square of the stretch.
-            (None, Some(gradient)) => {
-                Amplitude::RmsGradient(gradient / (0.5 + 0.5 / (stretch * stretch)).sqrt())
-            }
-            (None, None) => default,
-        }
-    }
-}
 
 /// A surface before it is made.
 pub(super) struct Generated {

@@ -20,6 +20,7 @@ mod object;
 mod options;
 mod parts;
 mod progress;
+mod roughness;
 mod source;
 mod summary;
 mod table;

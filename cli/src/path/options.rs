@@ -9,8 +9,8 @@ use asperity_cli::outcome::Failure;
 use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
-use super::generated::Roughness;
 use super::joint::Joint;
+use super::roughness::Roughness;
 use super::updater::{Updater, no_room};
 use crate::at::At;
 use crate::elasticity::{Bodies, Elasticity};
