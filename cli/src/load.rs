@@ -181,15 +181,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let (mut rows, mut states, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     for &at in &asked {
         let solved = solve(&mut solver, (at, conducts), &grid).and_then(|(solution, seconds)| {
-            let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
+            let resolution =
+                Resolution::of(&solution.fields.contact_map, &grid, half_space.boundary());
             let resolution = resolution
                 .map_err(|error| Failure::new("cannot find the contact patches", error))?;
             let row = Row {
-                contact: solution.state,
-                greatest: solution.max_pressure(),
+                contact: solution.contact,
+                greatest: solution.fields.max_pressure(),
                 corrected_area: resolution.corrected_area,
-                yielded: solution.plastic.as_ref().map(|p| p.area / grid.nominal_area()),
-                conductances: conductances(&conductions, &solution.state, layering),
+                yielded: solution.contact.plastic.map(|plastic| plastic.yielded_area_fraction),
+                conductances: conductances(&conductions, &solution.contact, layering),
             };
             let numbers = numbers(&solution, &row, &grid);
             let cells: Vec<&str> = numbers.iter().map(|(_, number)| number.as_str()).collect();
@@ -199,10 +200,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             rows.push(row);
             print_words(at, &solution, &resolution, seconds);
             let on = (&grid, half_space.boundary());
-            let of_contact = Warning::of_contact(&solution.pressure, &solution.contact_map, on)
-                .map_err(|error| Failure::new("cannot look at the contact", error))?;
-            let yields = solution.plastic.is_some();
-            let high = bodies.warning_of(solution.max_pressure()).filter(|_| !yields);
+            let of_contact =
+                Warning::of_contact(&solution.fields.pressure, &solution.fields.contact_map, on)
+                    .map_err(|error| Failure::new("cannot look at the contact", error))?;
+            let yields = solution.contact.plastic.is_some();
+            let high = bodies.warning_of(solution.fields.max_pressure()).filter(|_| !yields);
             let told = of_contact.iter().chain(&high).map(advice::told);
             warnings.extend(told.map(|told| format!("at {at}: {told}")));
             Ok(solution)
@@ -210,13 +212,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         match solved {
             Ok(solution) => {
                 let picture = options.out.join(format!("contact_map_{}.png", at.name()));
-                let FixedLoadSolution { state, pressure, contact_map, .. } = &solution;
+                let FixedLoadSolution { contact, fields, .. } = &solution;
                 outcome.written(draw_map(
                     &grid,
-                    state,
-                    pressure,
-                    contact_map,
-                    solution.plastic.as_ref().map(|plastic| &plastic.yielded_map),
+                    contact,
+                    &fields.pressure,
+                    &fields.contact_map,
+                    contact.plastic.map(|_| &fields.yielded_map),
                     &picture,
                 ));
                 if let Some(directory) = &options.save {
@@ -259,7 +261,7 @@ fn solve(
     let seconds = start.elapsed().as_secs_f64();
     solver.add_stiffness(&mut solution).map_err(failed)?;
     // What has yielded conducts by the stiffness on unloading.
-    if conducts && solution.plastic.is_some() {
+    if conducts && solution.contact.plastic.is_some() {
         solver.add_unloading_stiffness(&mut solution).map_err(failed)?;
     }
     let seconds_more = start.elapsed().as_secs_f64() - seconds;
@@ -285,7 +287,7 @@ const COLUMNS: [&str; 13] = [
 
 /// The numbers of those columns and of conductances, by name; nothing where there is none.
 fn numbers(solution: &FixedLoadSolution, row: &Row, grid: &Grid) -> Vec<(&'static str, String)> {
-    let state = solution.state;
+    let state = solution.contact;
     let exact = |value: f64| format!("{value:e}");
     let optional = |value: Option<f64>| value.map_or_else(String::new, exact);
     let of_columns = [
@@ -301,7 +303,7 @@ fn numbers(solution: &FixedLoadSolution, row: &Row, grid: &Grid) -> Vec<(&'stati
         exact(state.contact_area_fraction),
         exact(row.corrected_area),
         exact(row.yielded.unwrap_or(0.0)),
-        exact(solution.plastic.as_ref().map_or(0.0, |plastic| plastic.volume)),
+        exact(state.plastic.map_or(0.0, |plastic| plastic.volume)),
     ];
     let conducted = row.conductances.iter();
     let conducted = conducted.map(|(carrier, value)| (carrier.column(), exact(*value)));
@@ -346,22 +348,22 @@ fn print_words(
             false => String::new(),
         }
     );
-    if let Some(plastic) = &solution.plastic {
+    if let Some(plastic) = &solution.contact.plastic {
         note!(
             "  {} yielded, plastic volume {}, energy lost {}",
-            counted(plastic.yielded_nodes(), "node"),
+            counted(plastic.yielded_nodes, "node"),
             quantity(plastic.volume, "m³", 4),
             quantity(plastic.work, "J", 4)
         );
     }
-    if solution.state.contact_area_fraction == 1.0 {
+    if solution.contact.contact_area_fraction == 1.0 {
         note!("note: the contact is full; beyond full contact only the pressure changes");
     }
 }
 
 /// Writes the fields of a state.
 fn save(directory: &Path, solution: &FixedLoadSolution, at: At) -> Result<Vec<PathBuf>, Failure> {
-    let fields = [("pressure", &solution.pressure), ("gap", &solution.gap)];
+    let fields = [("pressure", &solution.fields.pressure), ("gap", &solution.fields.gap)];
     let written = fields.map(|(name, field)| {
         let file = directory.join(format!("{name}_{}.npy", at.name()));
         match write_npy(&file, field) {
@@ -390,7 +392,7 @@ fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
         if !is_right {
             return Err(Failure::request(format!(
                 "the contact under {} violates the contact conditions: {what} has an error of {error:.1e}, more than the allowed {allowed:.1e}",
-                quantity(solution.state.load, "N", 6)
+                quantity(solution.contact.load, "N", 6)
             )));
         }
     }

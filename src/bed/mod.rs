@@ -316,7 +316,7 @@ impl<'a> Bed<'a> {
         }
     }
 
-    /// The state of the path at a load, with which [`LoadingSolver::pressure_at`](crate::LoadingSolver::pressure_at) and its like
+    /// The state of the path at a load, with which [`LoadingPath::fields_at`](crate::LoadingPath::fields_at) and its like
     /// compute fields.
     ///
     /// # Errors

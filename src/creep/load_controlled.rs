@@ -125,7 +125,7 @@ impl<'a> Creep<'a> {
     }
 
     /// The state of the elastic path whose contact, gap and approach those of a time are: for
-    /// [`gap_at`](crate::LoadingSolver::gap_at), [`contact_map_at`](crate::LoadingSolver::contact_map_at), and
+    /// [`fields_at`](crate::LoadingPath::fields_at), [`contact_map_at`](crate::LoadingPath::contact_map_at), and
     /// [`patches`](crate::patches). Its load is the effective one, and its pressure not that of the time.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ use crate::{Error, Grid};
 /// The states of a path in the order of loading, to be read at any instant between them.
 ///
 /// Between two events a path is linear in the approach, so that every reading is exact. The pressure that
-/// goes with it is [`LoadingSolver::pressure_at`](super::LoadingSolver::pressure_at).
+/// goes with it is [`LoadingPath::fields_at`](super::LoadingPath::fields_at).
 ///
 /// ```
 /// use asperity::loading::History;
@@ -28,7 +28,7 @@ use crate::{Error, Grid};
 /// for load in [10.0, 500.0, 1000.0] {
 ///     let state = history.at(ContactTarget::Load(load))?;
 ///     assert_eq!(state.contact.load, load);
-///     let pressure = path.pressure_at(&state)?;
+///     let pressure = path.fields_at(&state)?.pressure;
 ///     assert!((pressure.sum() * path.grid().cell_area() / load - 1.0).abs() < 1e-12);
 /// }
 /// assert!(history.at_load(1001.0).is_none());

@@ -20,7 +20,7 @@
 //! // Fields of a state, without the path:
 //! let at_100_newtons = record.history().at(ContactTarget::Load(100.0))?;
 //! let mut replay = record.replay()?;
-//! let pressure = replay.pressure_at(&at_100_newtons)?;
+//! let pressure = replay.fields_at(&at_100_newtons)?.pressure;
 //! # assert!(pressure.max() > 0.0);
 //!
 //! // And on to 600 N:
@@ -321,7 +321,7 @@ impl LoadingRecord {
     }
 
     /// The path as it was, for the fields of its states
-    /// ([`LoadingPath::pressure_at`]): each is one solution on a known contact set, without a factor.
+    /// ([`LoadingPath::fields_at`]): each is one solution on a known contact set, without a factor.
     ///
     /// # Errors
     ///

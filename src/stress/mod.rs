@@ -21,7 +21,7 @@
 //!     .build()?;
 //! let history: History = path.by_ref().collect::<Result<_, _>>()?;
 //! let steel = Subsurface::of(&half_space, 0.3)?;
-//! let greatest = steel.survey(&path.pressure()?, None)?.greatest(Measure::VonMises);
+//! let greatest = steel.survey(&path.fields()?.pressure, None)?.greatest(Measure::VonMises);
 //! println!("{} Pa at a depth of {} m", greatest.value, greatest.depth);
 //! if let Some(first) = steel.first_yield(&mut path, &history, 1e9)? {
 //!     println!("yields first under {} N", first.state.contact.load);

@@ -187,11 +187,9 @@ fn fields_are_those_of_their_states() -> Result<(), Error> {
     let mut replay = record.replay()?;
     for (state, left) in states.iter().zip(left.chunks(32 * 32)) {
         let place = state["event"].as_u64().unwrap() as usize;
-        let (pressure, gap) = replay.pressure_and_gap_at(&record.states()[place])?;
-        assert_eq!(pressure, replay.pressure_at(&record.states()[place])?);
-        assert_eq!(gap, replay.gap_at(&record.states()[place])?);
-        let map = replay.contact_map_at(&record.states()[place])?;
-        let is_in: Vec<bool> = map.iter().copied().collect();
+        let fields = replay.fields_at(&record.states()[place])?;
+        let (pressure, gap) = (fields.pressure, fields.gap);
+        let is_in: Vec<bool> = fields.contact_map.iter().copied().collect();
         let (greatest, widest) =
             (state["pressure"].as_f64().unwrap(), state["gap"].as_f64().unwrap());
         assert_eq!((greatest, widest), (pressure.max(), gap.max()));

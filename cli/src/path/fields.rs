@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use asperity::contact::ContactFields;
 use asperity::io::{write_gsf, write_npy, write_vti};
-use asperity::{Grid, LoadingState, SurfaceError};
+use asperity::{Grid, SurfaceError};
 use clap::ValueEnum;
 use nalgebra::DMatrix;
 
-use super::Solver;
+use super::job::Job;
 use asperity_cli::outcome::Failure;
 
 /// How fields are written.
@@ -24,28 +25,14 @@ pub(crate) enum Format {
 /// Pressure and gap, and with a hardness the plastic depth.
 pub(crate) type Fields = Vec<(&'static str, DMatrix<f64>)>;
 
-/// Those of the present state.
-pub(crate) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
-    let failed = |error| Failure::new("cannot compute the fields of the last state", error);
-    let mut fields = vec![
-        ("pressure", solver.pressure().map_err(failed)?),
-        ("gap", solver.gap().map_err(failed)?),
-    ];
-    if solver.hardness_map().is_some() {
-        fields.push(("plastic_depth", solver.plastic_depth().map_err(failed)?));
-    }
-    Ok(fields)
-}
-
-/// Those of another state of the path.
-pub(super) fn at(solver: &mut Solver, state: &LoadingState) -> Result<Fields, Failure> {
-    let failed = |error| Failure::new("cannot compute the fields of a state", error);
-    let (pressure, gap) = solver.pressure_and_gap_at(state).map_err(failed)?;
+/// Those of a state that are written.
+pub(super) fn of(fields: ContactFields, job: &Job) -> Fields {
+    let ContactFields { pressure, gap, plastic_depth, .. } = fields;
     let mut fields = vec![("pressure", pressure), ("gap", gap)];
-    if solver.hardness_map().is_some() {
-        fields.push(("plastic_depth", solver.plastic_depth_at(state).map_err(failed)?));
+    if job.has_hardness() {
+        fields.push(("plastic_depth", plastic_depth));
     }
-    Ok(fields)
+    fields
 }
 
 /// Writes fields into a directory, with an ending of their names; returns the names of the files.

@@ -196,8 +196,12 @@ fn follow_one(
                 }),
         );
     }
-    match fields::of(&mut solver) {
-        Ok(fields) => {
+    let mut map = None;
+    match solver.fields() {
+        Ok(found) => {
+            let name = options.out.join("contact_map.png");
+            map = states.last().map(|last| map::draw(&job, last, &found, &name));
+            let fields = fields::of(found, &job);
             if let (Some(name), Some(Ok(_))) = (record, &kept) {
                 kept = Some(save(name, &job, &solver, &states, &fields));
             }
@@ -206,7 +210,9 @@ fn follow_one(
                 outcome.all_written(written);
             }
         }
-        Err(failure) => outcome.note(Err(failure)),
+        Err(error) => {
+            outcome.note(Err(Failure::new("cannot compute the fields of the last state", error)));
+        }
     }
     if let Some(kept) = kept {
         outcome.written(kept);
@@ -228,10 +234,7 @@ fn follow_one(
     }
     outcome.all_written(options.joint.write(&job.pair(), &states, &options.out));
     outcome.written(curves::draw(&job, &states, &options.out));
-    if let Some(last) = states.last() {
-        let name = options.out.join("contact_map.png");
-        outcome.written(map::draw(&job, &mut solver, last, &name));
-    }
+    map.into_iter().for_each(|map| outcome.written(map));
     let (moments, missed) = moments::reached(&job, &states);
     for moment in &moments {
         let written = moments::write(&job, &mut solver, moment, (&options.out, options.fields));

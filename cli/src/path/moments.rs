@@ -40,11 +40,13 @@ pub(super) fn write(
     (at, state): &(At, LoadingState),
     (directory, format): (&Path, Option<Format>),
 ) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |error| Failure::new(format!("cannot compute the fields at {at}"), error);
+    let found = solver.fields_at(state).map_err(failed)?;
     let ending = format!("_{}", at.name());
     let name = directory.join(format!("contact_map{ending}.png"));
-    let mut files = vec![map::draw(job, solver, state, &name)?];
+    let mut files = vec![map::draw(job, state, &found, &name)?];
     if let Some(format) = format {
-        let found = fields::at(solver, state)?;
+        let found = fields::of(found, job);
         files.extend(fields::write(&found, &job.grid(), format, (directory, &ending))?);
     }
     Ok(files)

@@ -21,7 +21,7 @@ pub(super) fn print(
     let failed = |error| Failure::new("cannot compute the last state", error);
     let corrected = corrected_areas(job, states).map_err(failed)?;
     let area = |state: &LoadingState| corrected.get(state.step - 1).copied();
-    let greatest = solver.max_pressure().map_err(failed)?;
+    let greatest = solver.fields().map_err(failed)?.max_pressure();
     let scalars = |state: Option<&LoadingState>, greatest, corrected_area| {
         let mut object = scalars(state, greatest, corrected_area);
         if let Some(state) = state {
@@ -41,7 +41,7 @@ pub(super) fn print(
     if !job.at().is_empty() {
         let mut asked = Vec::new();
         for (at, state) in moments::reached(job, states).0 {
-            let greatest = solver.pressure_at(&state).map_err(failed)?.max();
+            let greatest = solver.fields_at(&state).map_err(failed)?.max_pressure();
             let mut object = scalars(Some(&state), greatest, area(&state));
             object.insert("at".to_string(), json!(at.to_string()));
             asked.push(Value::Object(object));

@@ -39,7 +39,7 @@ impl Summary {
         let failed = |error| Failure::new("cannot compute the last state", error);
         let corrected = corrected_areas(job, states).map_err(failed)?;
         let Some(last) = states.last() else { return Ok(()) };
-        let greatest = solver.max_pressure().map_err(failed)?;
+        let greatest = solver.fields().map_err(failed)?.max_pressure();
         self.rows.push(row(job, last, greatest, &corrected, conductions));
         self.seeds.push(seed);
         self.grid = Some(job.grid());

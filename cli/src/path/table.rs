@@ -41,7 +41,7 @@ pub(super) fn print(
         .map_err(|error| Failure::new("cannot compute the corrected contact area", error))?;
     let mut failed = Ok(());
     let shown = rows(job, states, last).into_iter().map(|state| {
-        let greatest = solver.pressure_at(&state).map(|pressure| pressure.max());
+        let greatest = solver.fields_at(&state).map(|fields| fields.max_pressure());
         let greatest = greatest.unwrap_or_else(|error| {
             failed = Err(Failure::new("cannot compute a pressure for the table", error));
             f64::NAN
@@ -134,7 +134,7 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
 /// What looks wrong with the end of the path.
 pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let failed = |error| Failure::new("cannot compute the pressure of the last state", error);
-    let pressure = solver.pressure().map_err(failed)?;
+    let pressure = solver.fields().map_err(failed)?.pressure;
     let on = (&job.grid(), job.boundary());
     let of_contact = Warning::of_contact(&pressure, &solver.contact_map(), on).map_err(failed)?;
     // With a hardness it is what was asked for.
