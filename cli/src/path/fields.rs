@@ -8,7 +8,6 @@ use asperity::{Grid, SurfaceError};
 use clap::ValueEnum;
 use nalgebra::DMatrix;
 
-use super::job::Job;
 use asperity_cli::outcome::Failure;
 
 /// How fields are written.
@@ -26,10 +25,10 @@ pub(crate) enum Format {
 pub(crate) type Fields = Vec<(&'static str, DMatrix<f64>)>;
 
 /// Those of a state that are written.
-pub(super) fn of(fields: ContactFields, job: &Job) -> Fields {
+pub(super) fn of(fields: ContactFields, has_hardness: bool) -> Fields {
     let ContactFields { pressure, gap, plastic_depth, .. } = fields;
     let mut fields = vec![("pressure", pressure), ("gap", gap)];
-    if job.has_hardness() {
+    if has_hardness {
         fields.push(("plastic_depth", plastic_depth));
     }
     fields

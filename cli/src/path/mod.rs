@@ -201,7 +201,7 @@ fn follow_one(
         Ok(found) => {
             let name = options.out.join("contact_map.png");
             map = states.last().map(|last| map::draw(&job, last, &found, &name));
-            let fields = fields::of(found, &job);
+            let fields = fields::of(found, job.has_hardness());
             if let (Some(name), Some(Ok(_))) = (record, &kept) {
                 kept = Some(save(name, &job, &solver, &states, &fields));
             }

@@ -46,7 +46,7 @@ pub(super) fn write(
     let name = directory.join(format!("contact_map{ending}.png"));
     let mut files = vec![map::draw(job, state, &found, &name)?];
     if let Some(format) = format {
-        let found = fields::of(found, job);
+        let found = fields::of(found, job.has_hardness());
         files.extend(fields::write(&found, &job.grid(), format, (directory, &ending))?);
     }
     Ok(files)
