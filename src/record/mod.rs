@@ -5,7 +5,6 @@
 //! ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)).
 //!
 //! ```
-//! use asperity::loading::History;
 //! use asperity::record::LoadingRecord;
 //! use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};
 //!
@@ -14,7 +13,7 @@
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 //!     .max_load(500.0)
 //!     .build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let record = LoadingRecord::new(&path, history)?;
 //!
 //! // Fields of a state, without the path:

@@ -35,7 +35,7 @@ fn record_of(
         builder = builder.hardness(hardness);
     }
     let mut path = builder.build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     LoadingRecord::new(&path, history)
 }
 
@@ -220,7 +220,7 @@ fn the_page_of_a_rough_surface_is_small() -> Result<(), Error> {
     let surface = HeightMap::new(heights)?;
     let kernel = Boussinesq::new(grid, 1e9)?;
     let mut path = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.3).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     let record = LoadingRecord::new(&path, history)?;
     let page = page_of("noise", &record)?;
     let fields = &data_of(&page)["records"][0]["fields"];
