@@ -29,7 +29,9 @@ impl FromStr for LayerArgument {
         let expected = "neither 'E,NU,H' nor 'NAME,H', with the thickness H in metres";
         let (material, thickness) = text.rsplit_once(',').ok_or(expected)?;
         let material = material.parse().map_err(|error| format!("{expected}: {error}"))?;
-        Ok(Self { material, thickness: LENGTH.positive()(thickness)? })
+        let thickness =
+            LENGTH.positive()(thickness).map_err(|error| format!("thickness: {error}"))?;
+        Ok(Self { material, thickness })
     }
 }
 

@@ -60,6 +60,8 @@ impl FromStr for Material {
             let names: Vec<&str> = Known::ALL.iter().map(|known| known.name).collect();
             return Err(format!("neither 'E,NU' nor one of {}", names.join(", ")));
         };
-        Ok(Self { name: None, e: PRESSURE.positive()(e)?, nu: number(nu)?, hardness: None })
+        let e = PRESSURE.positive()(e).map_err(|error| format!("Young's modulus: {error}"))?;
+        let nu = number(nu).map_err(|error| format!("Poisson's ratio: {error}"))?;
+        Ok(Self { name: None, e, nu, hardness: None })
     }
 }

@@ -161,7 +161,9 @@ impl Warning {
     /// Warnings about a hardness of bodies of a composite modulus. What is harder than they can be does not yield.
     #[must_use]
     pub fn of_hardness(hardness: f64, e_star: f64) -> Option<Self> {
-        (hardness < HARDNESSES.start() * e_star).then_some(Self::Hardness { hardness, e_star })
+        // One that is not positive is no hardness at all, and an error elsewhere.
+        let is_soft = hardness > 0.0 && hardness < HARDNESSES.start() * e_star;
+        is_soft.then_some(Self::Hardness { hardness, e_star })
     }
 
     /// Warnings about the layers of a body on a grid whose cells are wider than the coat is thick: down to where the modulus is twice

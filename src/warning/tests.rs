@@ -272,6 +272,7 @@ fn a_hardness_without_its_unit_is_noticed() {
         |hardness: f64| Warning::of_hardness(hardness, 230.8e9).map(|warning| warning.to_string());
     assert_eq!(of(2.5e9), None);
     assert_eq!(of(1e7), None);
+    assert_eq!(of(-1.0), None);
     for (hardness, words) in [
         (
             2.5,
