@@ -71,7 +71,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
     let mut text = String::from(
-        "## Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
+        "## Coated and thin bodies\n\nStudy `layers`.\n",
     );
     if options.only_picture {
         let picture = coats(&options.out, &mut text)?;
@@ -180,7 +180,7 @@ fn padded(text: &mut String) -> Result<(), Error> {
     Ok(())
 }
 
-/// The bodies whose iterations are counted, on cells of 1: a half-space, five layers, and thin and thick ones.
+/// The bodies whose iterations are counted, on cells of 1: a half-space, five layers, a thick and a thin one.
 fn counted() -> Result<Vec<(&'static str, Option<LayeredBody>)>, Error> {
     let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
     // Six layers of two cells, from a tenth of the modulus at the surface to that of the base.
@@ -198,9 +198,7 @@ fn counted() -> Result<Vec<(&'static str, Option<LayeredBody>)>, Error> {
         ("rigid base, ν = 0.3, h = 4", Some(one_layer(1.0, 0.3, 4.0, Base::Rigid)?)),
         ("rigid base, ν = 0.5, h = 4", Some(one_layer(1.0, 0.5, 4.0, Base::Rigid)?)),
         ("six layers, E/E₂ from 0.1 to 0.7", Some(LayeredBody::new(&graded, steel)?)),
-        ("stiff coat, E₁/E₂ = 3, h = 4", Some(one_layer(3.0, 0.3, 4.0, steel)?)),
         ("stiff coat, E₁/E₂ = 10, h = 32", Some(one_layer(10.0, 0.3, 32.0, steel)?)),
-        ("rigid base, ν = 0.3, h = 0.5", Some(one_layer(1.0, 0.3, 0.5, Base::Rigid)?)),
         ("rigid base, ν = 0.5, h = 1", Some(one_layer(1.0, 0.5, 1.0, Base::Rigid)?)),
     ])
 }
@@ -379,6 +377,5 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
         },
     ];
     let picture = chart::draw(&charts, 2, &directory.join("layers.png"))?;
-    text.push_str("\n![Contact area and stiffness against load for a soft coat, none and a stiff coat](images/layers.png)\n");
     Ok(picture)
 }

@@ -47,7 +47,7 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error: Error| Failure::new("cannot compute stresses", error);
     let mut text = String::from(
-        "## Stress below the surface\n\nWritten by `cargo run --release -p asperity-studies --bin stress -- --report docs/validation.md`.\n",
+        "## Stress below the surface\n\nStudy `stress`.\n",
     );
     meshes(&mut text).map_err(failed)?;
     waves(&mut text).map_err(failed)?;
@@ -163,7 +163,7 @@ fn meshes(text: &mut String) -> Result<(), Error> {
         let order = (errors[0] / errors[3]).log2() / 3.0;
         let _ = writeln!(text, " {order:.1} |");
     }
-    text.push_str("\nThe order is that from the first mesh to the last. Places of maxima scatter: a maximum is flat, and its place follows from its value with the root of the error.\n");
+    text.push_str("\nThe order is that from the first mesh to the last. A maximum is flat: its place follows from its value with the root of the error.\n");
     Ok(())
 }
 
