@@ -70,9 +70,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
-    let mut text = String::from(
-        "## Coated and thin bodies\n\nStudy `layers`.\n",
-    );
+    let mut text = String::from("## Coated and thin bodies\n\nStudy `layers`.\n");
     if options.only_picture {
         let picture = coats(&options.out, &mut text)?;
         println!("{text}\n{}", picture.display());

@@ -46,9 +46,7 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error: Error| Failure::new("cannot compute stresses", error);
-    let mut text = String::from(
-        "## Stress below the surface\n\nStudy `stress`.\n",
-    );
+    let mut text = String::from("## Stress below the surface\n\nStudy `stress`.\n");
     meshes(&mut text).map_err(failed)?;
     waves(&mut text).map_err(failed)?;
     times(options.nodes, &mut text).map_err(failed)?;

@@ -194,7 +194,8 @@ fn sphere(text: &mut String) -> Result<(), Error> {
 fn tamaas(text: &mut String) {
     let (mut surfaces, mut other, mut greatest) = (0, 0, 0.0_f64);
     for line in TAMAAS.lines().skip(1) {
-        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+        let cells: Vec<f64> =
+            line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
         surfaces += 1;
         other += (cells[6] + cells[7]) as usize;
         greatest = greatest.max(cells[8]);

@@ -79,7 +79,8 @@ impl Report {
             let [counted, corrected, gap_limit] = self.limits(load);
             area = area.max((corrected / counted - 1.0).abs());
             let shown = load % 2 == 1;
-            for mesh in self.meshes.first().into_iter().chain(self.meshes.last()).filter(|_| shown) {
+            for mesh in self.meshes.first().into_iter().chain(self.meshes.last()).filter(|_| shown)
+            {
                 row(&mut text, &mesh[load]);
             }
             if let [.., fine, finest] = self.meshes.as_slice() {

@@ -104,7 +104,9 @@ impl Study {
     fn choice(&self) -> String {
         let share = 100.0 * ENOUGH;
         let cells = |found: Option<usize>| {
-            found.map_or("no mesh of these".to_string(), |cells| format!("{cells} cells to λₛ or more"))
+            found.map_or("no mesh of these".to_string(), |cells| {
+                format!("{cells} cells to λₛ or more")
+            })
         };
         let counted = self.coarsest(|f, load| self.left(f, load)[0].abs() <= ENOUGH);
         let corrected = self.coarsest(|f, load| self.left(f, load)[1].abs() <= ENOUGH);
