@@ -210,43 +210,37 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
     let amplitude = asperity::surface::Amplitude::RmsHeight(1.0);
     let surface = SelfAffine::new(0.8, 0.25 * n as f64, 8.0, amplitude, 1)?;
     let fractions = [0.01, 0.1, 0.3, 0.6];
-    let (mut loads, mut paths) = (String::new(), String::new());
+    let mut rows = String::new();
     for (name, body) in counted()?.into_iter().filter(|(name, _)| name.contains(word)) {
         let kernel: Box<dyn InfluenceKernel> = match body {
             None => Box::new(Boussinesq::new(grid, 1.0)?),
             Some(body) => Box::new(Layered::free(grid, body)?),
         };
         let start = Instant::now();
-        let _ = write!(loads, "| {name} |");
-        let _ = write!(paths, "| {name} | {:?} |", kernel.contact_growth());
+        let _ = write!(rows, "| {name} | {:?} |", kernel.contact_growth());
         let mut solver = FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-10).build()?;
         for fraction in fractions {
             match load_and_stretch(&surface, &kernel, &mut solver, fraction) {
                 Ok([load, path]) => {
-                    let _ = write!(loads, " {load} |");
-                    let _ = write!(paths, " {path} |");
+                    let _ = write!(rows, " {load}; {path} |");
                 }
                 Err(error) => {
                     eprintln!("{name}, {fraction}: {error}");
-                    loads.push_str(" – |");
-                    paths.push_str(" – |");
+                    rows.push_str(" – |");
                 }
             }
             eprintln!("{name}, {fraction}: {:.1} s", start.elapsed().as_secs_f64());
         }
-        loads.push('\n');
-        paths.push('\n');
-        eprintln!("{loads}{paths}");
+        rows.push('\n');
+        eprintln!("{rows}");
     }
     let _ = write!(
         text,
         "\n**Iterations without a factor.** A self-affine surface (H = 0.8, shortest wavelength 8 cells) on {n}² nodes with a free \
-         boundary; thicknesses in cells. Single loads from scratch to 10⁻¹⁰, at the load of each area fraction: steps of conjugate \
-         gradients on the finest grid for the pressure + for the stiffness, and all convolutions there.\n\n\
-         | body | 1 % | 10 % | 30 % | 60 % |\n|---|---:|---:|---:|---:|\n{loads}\n\
-         The first {STRETCH} events of a path from each of these states (`ConjugateGradient`): convolutions an event, and windows taken \
+         boundary; thicknesses in cells. At each area fraction: convolutions of a single load from scratch to 10⁻¹⁰, with its stiffness; \
+         and convolutions an event over the first {STRETCH} events of a path from there (`ConjugateGradient`), with the windows taken \
          back.\n\n\
-         | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{paths}"
+         | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{rows}"
     );
     Ok(())
 }
@@ -276,9 +270,7 @@ fn load_and_stretch(
     let grid = kernel.grid();
     let load = load_at(solver, fraction)?;
     let solution = solver.solve(load)?;
-    let effort = &solution.effort;
-    let load =
-        format!("{} + {}, {}", effort.iterations, effort.stiffness_iterations, effort.convolutions);
+    let load = solution.effort.convolutions.to_string();
     let nodes = (0..grid.nodes()).filter(|&node| solution.contact_map.as_slice()[node]);
     let history: History = (1..)
         .zip(nodes)
