@@ -109,6 +109,16 @@ impl Mark {
     }
 }
 
+/// Where a path was before trials that it followed.
+#[derive(Debug)]
+pub(super) struct Before {
+    problem: Problem,
+    pub(super) contact: ContactSequence,
+    plastic: Option<Arc<Plastic>>,
+    releases: Releases,
+    scalars: PathScalars,
+}
+
 impl LoadingRun {
     /// Number of events so far, those in the queue included.
     pub(super) fn steps(&self) -> usize {
@@ -187,6 +197,28 @@ impl LoadingRun {
         self.contact.truncate(mark.count);
         self.scalars = mark.scalars;
         cut(&self.problem, &self.contact)
+    }
+
+    /// All that a trial changes.
+    pub(super) fn before(&self) -> Before {
+        Before {
+            problem: self.problem.clone(),
+            contact: self.contact.clone(),
+            plastic: self.plastic.clone(),
+            releases: self.releases.clone(),
+            scalars: self.scalars,
+        }
+    }
+
+    /// Takes back all trials since.
+    pub(super) fn go_back(&mut self, before: Before) {
+        let Before { problem, contact, plastic, releases, scalars } = before;
+        self.problem = problem;
+        self.contact = contact;
+        self.plastic = plastic;
+        self.releases = releases;
+        self.scalars = scalars;
+        self.field.forget();
     }
 
     /// Makes the gap field that of the present contact at an approach.

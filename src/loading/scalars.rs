@@ -123,12 +123,6 @@ impl PathScalars {
         self.approach = approach;
     }
 
-    /// Differences of stiffness and closing rate from those of another front.
-    pub(super) fn missing(&self, other: &Self) -> [f64; 2] {
-        let closing = (self.closing - other.closing) * self.grid.nodes() as f64;
-        [other.unit_stiffness - self.unit_stiffness, closing]
-    }
-
     /// Adds to load, mean gap and energy what they lack at the end of a window, in proportion to the way there,
     /// for the energy to its square: `walked` got there from this one's window, `end` is exact. The way of the load begins where that was
     /// known last.
@@ -379,7 +373,6 @@ mod tests {
         walked.advance(2.0);
         let mut end = walked;
         end.touch([0.125, 0.5], 2);
-        assert_eq!(start.missing(&end), [0.125, 0.5]);
         (end.load, end.mean_gap, end.energy) = (1.5, 0.25, 3.0);
         let mut scalars = start;
         scalars.pin(&walked, &end, [0.5; 2]);

@@ -60,7 +60,7 @@ fn rates_of([unit_stiffness, closing, depth, work]: [f64; 4]) -> Rates {
 
 /// Rates of events with what they lack at the end, where they are `exact`: in proportion to how much the events so far have changed
 /// them.
-fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
+pub(super) fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
     let (start, exact) = (numbers(start), numbers(exact));
     let events: Vec<[f64; 4]> = events.iter().map(numbers).collect();
     let mut found = events.clone();
@@ -168,38 +168,28 @@ pub(super) fn enqueue(
     Ok(())
 }
 
-/// Queues the states of events that come together, at the present approach: rates go from the first of two to the other in equal steps.
+/// Queues the states of events that come together, at the present approach, with the rates behind each.
 pub(super) fn enqueue_together(
     run: &mut LoadingRun,
     events: &[(usize, ContactEvent)],
     passed: Passed,
-    ([first, last], error): ([Rates; 2], f64),
+    (rates, error): (&[Rates], f64),
 ) -> Result<(), Error> {
-    let (first, last) = (numbers(&first), numbers(&last));
     let mut scalars = passed.start;
     scalars.advance(run.scalars.approach());
-    let stiffness = (last[0] - first[0]).abs();
+    let stiffnesses = [scalars.rates(), run.scalars.rates()].map(|rates| rates.unit_stiffness);
+    let stiffness = (stiffnesses[1] - stiffnesses[0]).abs();
     let error = scalars.reported_error(error, scalars.load_of(stiffness, error));
     let plastic = run.plastic.clone();
     let mut walk = Walk::new(plastic.as_deref(), passed.before);
-    for (k, &(node, kind)) in events.iter().enumerate() {
-        let part = (k + 1) as f64 / events.len() as f64;
-        let rates = std::array::from_fn(|k| first[k] + part * (last[k] - first[k]));
+    for (&(node, kind), &rates) in events.iter().zip(rates) {
         let bounds = walk.pass(node, kind);
         scalars.clamp_load(bounds);
         scalars.clamp_mean_gap();
-        walk.take(&mut scalars, rates_of(rates));
+        walk.take(&mut scalars, rates);
         run.enqueue_at(&scalars, (walk.step, kind, node), walk.contact_nodes(), error)?;
     }
     Ok(())
-}
-
-/// What each event of a window adds to stiffness and closing rate, scaled so that all of them add what they should.
-pub(super) fn pinned(window: &Window, all: [f64; 2]) -> Vec<[f64; 2]> {
-    let steps: Vec<[f64; 2]> = window.increments().collect();
-    let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
-    let scale = [0, 1].map(|k| if total(k) == 0.0 { 0.0 } else { all[k] / total(k) });
-    steps.into_iter().map(|step| [scale[0] * step[0], scale[1] * step[1]]).collect()
 }
 
 #[cfg(test)]

@@ -22,9 +22,10 @@ use asperity::{
 };
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
 use asperity_studies::page::Section;
+use asperity_studies::study;
 use clap::Parser;
 
 const QUADRATURE: &str = include_str!("../../../tests/data/layers_free.csv");
@@ -56,13 +57,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -85,13 +80,8 @@ fn run(options: &Options) -> Result<(), Failure> {
     padded(&mut text).map_err(failed)?;
     iterations(options.nodes, "", &mut text).map_err(failed)?;
     let picture = coats(&options.out, &mut text)?;
-    println!("{text}");
-    let mut outcome = Outcome::default();
-    if let Some(page) = &options.report {
-        let section = Section { study: "layers", text: &text, pictures: &[picture] };
-        outcome.written(section.publish(page));
-    }
-    outcome.finish()
+    let section = Section { study: "layers", text: &text, pictures: &[picture] };
+    section.show(options.report.as_deref())
 }
 
 fn one_layer(young: f64, poisson: f64, thickness: f64, base: Base) -> Result<LayeredBody, Error> {

@@ -15,6 +15,7 @@ use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREEN, ORANGE, Series, Style};
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
+use asperity_studies::study;
 use clap::{Parser, Subcommand};
 use nalgebra::DMatrix;
 
@@ -48,18 +49,16 @@ enum What {
 }
 
 fn main() -> ExitCode {
+    study::main(run)
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error| Failure::new("cannot follow a path", error);
-    let done = match Options::parse().what {
-        What::Drift { nodes, contact, every } => drift(nodes, contact, every).map_err(failed),
-        What::Condition { picture } => condition()
-            .map_err(failed)
-            .and_then(|found| picture.as_deref().map_or(Ok(()), |folder| draw(&found, folder))),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
+    match &options.what {
+        &What::Drift { nodes, contact, every } => drift(nodes, contact, every).map_err(failed),
+        What::Condition { picture } => {
+            let found = condition().map_err(failed)?;
+            picture.as_deref().map_or(Ok(()), |folder| draw(&found, folder))
         }
     }
 }

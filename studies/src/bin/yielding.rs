@@ -19,9 +19,10 @@ use asperity::{
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
 use asperity_studies::page::Section;
+use asperity_studies::study;
 use clap::Parser;
 use nalgebra::DMatrix;
 
@@ -43,13 +44,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -61,13 +56,8 @@ fn run(options: &Options) -> Result<(), Failure> {
     let pictures = metals(&options.out, &mut text)?;
     sphere(&mut text).map_err(failed)?;
     tamaas(&mut text);
-    println!("{text}");
-    let mut outcome = Outcome::default();
-    if let Some(page) = &options.report {
-        let section = Section { study: "yielding", text: &text, pictures: &pictures };
-        outcome.written(section.publish(page));
-    }
-    outcome.finish()
+    let section = Section { study: "yielding", text: &text, pictures: &pictures };
+    section.show(options.report.as_deref())
 }
 
 /// The surface of the first command, of steel, with a hardness and without.
