@@ -8,7 +8,7 @@ use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLACK, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style};
 use plotters::style::RGBColor;
 
-use crate::contact::{BAND, Contact, GRADIENT, HURST};
+use crate::contact::{Contact, GRADIENT, HURST};
 
 /// What Richardson's limits of counted and corrected area may differ by, and what the finest mesh may leave of the mean
 /// gap, relative, for the mesh to be called resolved.

@@ -155,12 +155,12 @@ impl Report {
         let farthest = |limit: &Limit| {
             scientific(limit.ratios.iter().map(|(distance, _)| *distance).fold(0.0, f64::max), 1)
         };
-        let _ = write!(
+        let _ = writeln!(
             text,
             "**The two limits.** Corrected area in contact over that of Hertz contacts, π(3P/8π)^⅔, with {} nodes a wave, and \
              corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, kernel Love, means over four \
              places of the crest between the nodes. A line in P^⅔ up to P = {} goes to {:.4} at P = 0, one in 1 − P up to 1 − P = {} \
-             to {:.4} at P = 1. **Verdict: contacts {}, holes {}** (criterion: 1 within {CLOSE}).\n",
+             to {:.4} at P = 1. **Verdict: contacts {}, holes {}** (criterion: 1 within {CLOSE}).",
             wave.light.nodes,
             wave.heavy.nodes,
             farthest(&wave.light),
