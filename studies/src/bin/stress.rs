@@ -13,6 +13,7 @@ use asperity::convolution::Convolution;
 use asperity::stress::{Measure, Stress, Subsurface};
 use asperity::{Boundary, Boussinesq, Error, Grid, PeriodicBoussinesq, Spectral};
 use asperity_cli::outcome::Failure;
+use asperity_studies::golden;
 use asperity_studies::page::Section;
 use asperity_studies::study;
 use clap::Parser;
@@ -157,28 +158,20 @@ fn meshes(text: &mut String) -> Result<(), Error> {
 
 /// The greatest difference of σzz and σrr on the axis of a sphere, and its depth, by golden section on the closed form.
 fn sphere_maximum() -> (f64, f64) {
-    golden(|z| {
+    let difference = |z: f64| {
         let radial = -(1.0 + POISSON) * (1.0 - z * (1.0 / z).atan()) + 0.5 / (1.0 + z * z);
         radial + 1.0 / (1.0 + z * z)
-    })
+    };
+    golden::greatest(difference, (0.2, 1.5))
 }
 
 /// Half of that of a cylinder.
 fn line_maximum() -> (f64, f64) {
-    golden(|z| {
+    let half = |z: f64| {
         let root = (1.0 + z * z).sqrt();
         0.5 * (2.0 * z - (1.0 + 2.0 * z * z) / root + 1.0 / root)
-    })
-}
-
-fn golden(f: impl Fn(f64) -> f64) -> (f64, f64) {
-    let (mut a, mut b) = (0.2_f64, 1.5_f64);
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..60 {
-        let (c, d) = (b - ratio * (b - a), a + ratio * (b - a));
-        if f(c) > f(d) { b = d } else { a = c }
-    }
-    (f(0.5 * (a + b)), 0.5 * (a + b))
+    };
+    golden::greatest(half, (0.2, 1.5))
 }
 
 /// Waves of pressure on the waves of the grid, and on cells, whose pressures are steps.
