@@ -137,7 +137,7 @@ pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,
     PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
-pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
+pub use loading::{ContactEvent, ContactRule, LoadingPath, LoadingSolver, LoadingState};
 pub use problem::Problem;
 pub use updater::{LinearUpdater, RecursiveCholesky};
 pub use warning::Warning;

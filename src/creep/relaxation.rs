@@ -10,8 +10,7 @@ use super::state::{CreepState, in_pieces};
 use crate::bed::{Bed, Superposition};
 use crate::kernel::Theory;
 use crate::loading::LoadingState;
-use crate::updater::LinearUpdater;
-use crate::{BedError, CreepError, Error, LoadingSolver};
+use crate::{BedError, CreepError, Error, LoadingPath};
 
 /// The contact of viscoelastic bodies at a history of approach: stress relaxation.
 ///
@@ -151,12 +150,8 @@ impl<'a> Relaxation<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`at`](Self::at) and of [`LoadingSolver::gap_at`].
-    pub fn gap<U: LinearUpdater>(
-        &self,
-        time: f64,
-        path: &mut LoadingSolver<U>,
-    ) -> Result<DMatrix<f64>, Error> {
+    /// Those of [`at`](Self::at) and of [`LoadingPath::gap_at`].
+    pub fn gap(&self, time: f64, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         let apart = (-self.at(time)?.approach).max(0.0);
         Ok(path.gap_at(&self.path_state(time)?)?.map(|gap| gap + apart))
     }

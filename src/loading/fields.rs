@@ -2,14 +2,13 @@
 
 use nalgebra::DMatrix;
 
+use super::path::LoadingPath;
 use super::snapshot::Snapshot;
-use super::solver::LoadingSolver;
 use super::state::LoadingState;
 use crate::contact::{Certificate, Conditions, ErrorLength};
-use crate::updater::LinearUpdater;
 use crate::{Error, HeightMap};
 
-impl<U: LinearUpdater> LoadingSolver<U> {
+impl LoadingPath {
     /// Node indices in contact at the present state, in the order in which they touched.
     #[must_use]
     pub fn contact_order(&self) -> Vec<usize> {
@@ -359,6 +358,7 @@ fn depth(total_gap: f64, has_yielded: bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loading::LoadingSolver;
     use crate::{ContactTarget, test_chain};
 
     /// Nodes 0 and 2 touch at 0 and at the approach 1, and the path ends at 3, where they carry 3/4 and 1/2.

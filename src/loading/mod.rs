@@ -84,6 +84,7 @@ mod fields;
 mod gap_field;
 mod history;
 mod limits;
+mod path;
 mod phase;
 mod plastic;
 mod ranking;
@@ -118,6 +119,7 @@ pub use event_cost::{factor_seconds, greatest_factor, iteration_seconds, last_fa
 pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
+pub use path::LoadingPath;
 pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
 #[doc(hidden)] // for the studies of this repository

@@ -222,9 +222,9 @@ impl LoadingRun {
     }
 
     /// Makes the gap field that of the present contact at an approach.
-    pub(super) fn renew_field<U: LinearUpdater>(
+    pub(super) fn renew_field(
         &mut self,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         approach: f64,
     ) -> Result<(), Error> {
         if self.field.belongs_to(&self.contact, approach) {
@@ -313,9 +313,9 @@ impl LoadingRun {
     }
 
     /// Opens a window on nodes at the present approach.
-    pub(super) fn watch<U: LinearUpdater>(
+    pub(super) fn watch(
         &mut self,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         window: &mut Window,
         nodes: impl Iterator<Item = usize>,
         horizon: f64,
@@ -342,9 +342,9 @@ impl LoadingRun {
     }
 
     /// Lets the nodes of a window's events join the contact.
-    pub(super) fn join<U: LinearUpdater>(
+    pub(super) fn join(
         &mut self,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         window: &Window,
     ) -> Result<(), Error> {
         let mark = self.mark();
@@ -434,9 +434,9 @@ impl LoadingRun {
     }
 
     /// The greatest window up to `size` that stays within the memory budget beside an updater.
-    pub(super) fn affordable<U: LinearUpdater>(
+    pub(super) fn affordable(
         &self,
-        updater: &U,
+        updater: &dyn LinearUpdater,
         mut size: usize,
     ) -> Result<usize, Error> {
         let count = self.contact.len();

@@ -16,7 +16,7 @@ use crate::{Error, test_chain};
 pub(super) fn run(gaps: &[f64]) -> Result<LoadingRun, Error> {
     let (surface, kernel) = (test_chain::surface(gaps)?, test_chain::kernel(gaps.len())?);
     let builder = LoadingSolver::builder(&surface, &kernel).updater(Dense);
-    Ok(builder.build()?.run)
+    Ok(builder.build()?.into_path().run)
 }
 
 /// A path with nodes in contact, solved at an approach.

@@ -37,7 +37,6 @@ pub use cholesky::RecursiveCholesky;
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;
-pub use iterations::Method;
 pub(crate) use iterations::{Behind, Beside, Iterations, Proposal, Solved};
 pub(crate) use join::join_all;
 pub(crate) use kept::{Kept, KeptBeside, KeptField};
@@ -45,6 +44,9 @@ pub use schur::Schur;
 pub use solution::Solution;
 pub(crate) use tuning::JOINED;
 pub use window_factor::WindowFactor;
+
+use std::any::Any;
+use std::fmt;
 
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
@@ -149,7 +151,7 @@ pub struct Left {
 /// # Ok(())
 /// # }
 /// ```
-pub trait LinearUpdater {
+pub trait LinearUpdater: Any + Send + Sync {
     /// Eliminates the contact I from the system bordered by the watched nodes P, none of them in contact:
     ///
     /// ```math
@@ -297,11 +299,11 @@ pub trait LinearUpdater {
         let _ = (problem, bytes);
         Ok(())
     }
+}
 
-    /// How a path uses the updater; by default for all that it asks.
-    #[doc(hidden)]
-    fn method(&self) -> Method {
-        Method::Factor
+impl fmt::Debug for dyn LinearUpdater {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("LinearUpdater")
     }
 }
 
@@ -378,15 +380,11 @@ macro_rules! forward_verbs {
 }
 use forward_verbs;
 
-impl<U: LinearUpdater + ?Sized> LinearUpdater for Box<U> {
+impl LinearUpdater for Box<dyn LinearUpdater> {
     forward_verbs!(as_mut);
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         (**self).bytes(contact, watched)
-    }
-
-    fn method(&self) -> Method {
-        (**self).method()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common::surface;
 use asperity::loading::{factor_seconds, iteration_seconds, last_factor};
-use asperity::updater::{Handover, LinearUpdater, Method, RecursiveCholesky};
+use asperity::updater::{Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, Error, Grid, LoadingSolver, LoadingState};
 
 fn path<U: LinearUpdater>(updater: U, budget: Option<usize>, nodes: usize) -> LoadingSolver<U> {
@@ -111,7 +111,6 @@ fn no_seam_without_need() {
 #[test]
 fn the_default_is_a_new_one() {
     let default = Handover::default();
-    assert!(matches!(default.method(), Method::FactorWhileItPays));
     assert_eq!(path(Handover::default(), None, 300).handed_over_at(), None);
     assert_eq!(default.bytes(100, 10), Handover::new().bytes(100, 10));
 }

@@ -162,9 +162,7 @@ impl Creep {
         py: Python<'py>,
         superposition: Superposition,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        let field = self
-            .increments
-            .field(py, |engine, bed| engine.superposed_pressure(&superposition, bed))?;
+        let field = self.increments.field(py, |engine, bed| superposition.pressure(bed, engine))?;
         rows(py, field)
     }
 }
@@ -277,7 +275,7 @@ impl Creep {
             Course::Approach(approach) => {
                 let prony = self.law();
                 self.increments.field(py, |engine, bed| {
-                    engine.relaxed_gap(&Relaxation::new(bed, prony, approach)?, time)
+                    Relaxation::new(bed, prony, approach)?.gap(time, engine)
                 })?
             }
         };

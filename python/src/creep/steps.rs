@@ -97,9 +97,9 @@ impl CreepSteps {
     /// ndarray of float, [row, column]
     #[pyo3(signature = (pieces=40))]
     fn pressure<'py>(&self, py: Python<'py>, pieces: usize) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        let field = self.increments.field(py, |engine, bed| {
-            engine.superposed_pressure(&self.last(bed)?.pressure(pieces)?, bed)
-        })?;
+        let field = self
+            .increments
+            .field(py, |engine, bed| self.last(bed)?.pressure(pieces)?.pressure(bed, engine))?;
         rows(py, field)
     }
 
@@ -115,9 +115,7 @@ impl CreepSteps {
     /// ndarray of float, [row, column]
     #[pyo3(signature = (pieces=40))]
     fn gap<'py>(&self, py: Python<'py>, pieces: usize) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        let field = self
-            .increments
-            .field(py, |engine, bed| engine.stepped_gap(&self.last(bed)?, pieces))?;
+        let field = self.increments.field(py, |engine, bed| self.last(bed)?.gap(pieces, engine))?;
         rows(py, field)
     }
 

@@ -1,6 +1,5 @@
 //! The loading path.
 
-mod engine;
 mod inner;
 pub(crate) mod setup;
 mod unloading;
@@ -20,7 +19,8 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
-pub(crate) use self::engine::{Engine, Sheared};
+/// The path of the engine.
+pub(crate) type Engine = asperity::LoadingPath;
 use self::inner::Inner;
 use crate::arrays::{column, rows, shape};
 use crate::choice;
@@ -59,7 +59,7 @@ impl LoadingPath {
         let setting = Setting {
             grid: engine.problem().grid(),
             boundary: engine.problem().boundary(),
-            has_hardness: engine.has_hardness(),
+            has_hardness: engine.hardness_map().is_some(),
         };
         Self { inner: Mutex::new(inner), setting, e_star }
     }
@@ -111,7 +111,7 @@ impl LoadingPath {
     pub(crate) fn computed<T: Send>(
         &self,
         py: Python<'_>,
-        compute: impl FnOnce(&mut dyn Engine) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
         let mut inner = self.lock(py);
         let engine = inner.engine_mut();
@@ -122,7 +122,7 @@ impl LoadingPath {
     pub(crate) fn with_record<T: Send>(
         &self,
         py: Python<'_>,
-        compute: impl FnOnce(&mut dyn Engine, &LoadingRecord) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &LoadingRecord) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
         let mut inner = self.lock(py);
         let record = inner.record()?;
@@ -135,7 +135,7 @@ impl LoadingPath {
         &self,
         py: Python<'_>,
         state: Option<PyRef<'_, State>>,
-        compute: impl FnOnce(&mut dyn Engine, &LoadingState) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &LoadingState) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
         let mut inner = self.lock(py);
         let state = Self::state_or_last(&inner, state)?;
@@ -148,7 +148,7 @@ impl LoadingPath {
         &self,
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
-        compute: impl FnOnce(&mut dyn Engine, &LoadingState) -> Result<DMatrix<T>, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &LoadingState) -> Result<DMatrix<T>, Error> + Send,
     ) -> Fallible<Bound<'py, PyArray2<T>>> {
         rows(py, self.at(py, state, compute)?)
     }

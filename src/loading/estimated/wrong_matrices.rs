@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use crate::loading::phase::Phase;
 use crate::loading::{LoadingEnd, LoadingState};
 use crate::surface::{Amplitude, HeightMap, SelfAffine};
 use crate::updater::RecursiveCholesky;
@@ -49,7 +50,8 @@ fn followed(
     iterations: Altered,
 ) -> Result<(Vec<LoadingState>, usize), Error> {
     let builder = LoadingSolver::builder(surface, kernel).hardness(HARDNESS);
-    let mut path = builder.updater(iterations).window_size(24).build()?;
+    let iterations = Phase::Iterations(Box::new(iterations));
+    let mut path = builder.window_size(24).settings.build(iterations)?;
     let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
     assert_eq!(path.end(), Some(LoadingEnd::FullyPlastic));
     Ok((states, path.timings().taken_back))
@@ -132,8 +134,9 @@ fn any_iterations_are_corrected() -> Result<(), Error> {
     let (surface, kernels) = problems(20)?;
     for kernel in &kernels {
         let exact = exact(&surface, &**kernel, None)?;
-        let builder = LoadingSolver::builder(&surface, &**kernel).updater(off_by(0.03));
-        let found: Vec<_> = builder.window_size(24).build()?.collect::<Result<_, _>>()?;
+        let builder = LoadingSolver::builder(&surface, &**kernel).window_size(24);
+        let iterations = Phase::Iterations(Box::new(off_by(0.03)));
+        let found: Vec<_> = builder.settings.build(iterations)?.collect::<Result<_, _>>()?;
         assert_eq!(found.len(), exact.len());
         let initial = exact[0].contact.mean_gap;
         for (state, expected) in found.iter().zip(&exact) {
@@ -167,8 +170,9 @@ fn the_ends_of_windows_are_mended() -> Result<(), Error> {
     let window = 24;
     for kernel in &kernels {
         let exact = exact(&surface, &**kernel, None)?;
-        let builder = LoadingSolver::builder(&surface, &**kernel).updater(off_by(0.5));
-        let mut path = builder.window_size(window).build()?;
+        let builder = LoadingSolver::builder(&surface, &**kernel).window_size(window);
+        let iterations = Phase::Iterations(Box::new(off_by(0.5)));
+        let mut path = builder.settings.build(iterations)?;
         let found: Vec<_> = path.by_ref().collect::<Result<_, _>>()?;
         assert_eq!(found.len(), exact.len());
         // Nodes in one contact and not in the other.

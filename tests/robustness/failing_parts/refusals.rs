@@ -78,7 +78,7 @@ fn an_error_at_any_call_is_the_last_item() {
                     }
                 }
                 assert!(states == expected[..states.len()], "{context}");
-                let Some(method) = path.updater().unwrap().state.struck.get() else {
+                let Some(method) = path.updater().unwrap().state.struck() else {
                     // A question that cannot fail.
                     assert!(failure.is_none() && states.len() == expected.len());
                     continue;

@@ -99,7 +99,7 @@ fn errors_and_panics_end_paths_on_which_nodes_yield() {
                             Err(_) => break Some(true),
                         }
                     };
-                    let Some(method) = path.updater().unwrap().state.struck.get() else {
+                    let Some(method) = path.updater().unwrap().state.struck() else {
                         if ended.is_none() && at >= path.updater().unwrap().state.calls() {
                             break;
                         }

@@ -1,7 +1,7 @@
 //! The two rules for the next contact on the surface of Table 1.
 
 use asperity::{Boussinesq, LoadingSolver, LoadingState};
-use asperity_studies::smallest_gap::{LoadingPath, SmallestGap};
+use asperity_studies::smallest_gap::{EitherPath, SmallestGap};
 
 use crate::surfaces::{E_STAR, Rough, grid};
 use asperity_cli::outcome::Failure;
@@ -77,7 +77,7 @@ impl Rules {
     }
 }
 
-fn examine(mut path: impl LoadingPath) -> Result<Findings, asperity::Error> {
+fn examine(mut path: impl EitherPath) -> Result<Findings, asperity::Error> {
     let mut found = Findings::default();
     while let Some(state) = path.next() {
         let state = state?;
