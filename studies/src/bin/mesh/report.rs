@@ -24,7 +24,7 @@ impl Study {
             "## Mesh and spectrum\n\n\
              Study `mesh`: how much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend on the mesh?\n\n\
              Self-affine surfaces as those of the section on rough contact (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel \
-             Love), {} seeds; *cells* are those to the shortest wave, λₛ. The surface of a seed \
+             Love), {} seeds, {} loads, of which the tables show every second; *cells* are those to the shortest wave, λₛ. The surface of a seed \
              is the same on every mesh. *Corrected* is the \
              area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
              (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is \
@@ -33,6 +33,7 @@ impl Study {
              ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the width of the \
              spectrum](images/mesh.png)",
             self.surfaces,
+            LOADS.len(),
             Perimeter::AREA_CORRECTION,
         )
     }
