@@ -35,7 +35,7 @@ fn main() -> Result<(), Error> {
     let mut path =
         LoadingSolver::builder(&Paraboloid::new(5e-3)?, &half_space).max_load(300.0).build()?;
     let history: History = path.by_ref().collect::<Result<_, _>>()?;
-    let pressure = path.pressure()?;
+    let pressure = path.fields()?.pressure;
 
     let below = Subsurface::of(&half_space, steel.1)?;
     println!("under 300 N the greatest pressure is {:.3} GPa", 1e-9 * pressure.max());

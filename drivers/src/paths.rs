@@ -203,11 +203,11 @@ impl<'a> Trial<'a> {
             let steps = history.events().partition_point(|s| s.step <= state.step);
             let mut walk = Walk::new(&self.dense, self.grid, demands);
             walk.skip(&history.events()[..steps])?;
-            match path.pressure_at(&state) {
+            match path.fields_at(&state).map(|fields| fields.pressure) {
                 Ok(pressure) => {
                     let failed = |error: Error| Violation::new(error.to_string());
-                    let gap = path.gap_at(&state).map_err(failed)?;
-                    let depth = path.plastic_depth_at(&state).map_err(failed)?;
+                    let gap = path.fields_at(&state).map_err(failed)?.gap;
+                    let depth = path.fields_at(&state).map_err(failed)?.plastic_depth;
                     let context =
                         |violation: Violation| violation.during(format!("reading {state:?}"));
                     walk.compare_fields(&state, [&pressure, &gap, &depth]).map_err(context)?;

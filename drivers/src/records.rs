@@ -134,8 +134,12 @@ fn bring_back(
     let replay = record.replay_on(&sample.kernel);
     let mut replay = replay.map_err(|error| Violation::new(format!("no replay: {error}")))?;
     let k = draw.whole(0, last);
-    let fields = replay.pressure_at(&states[k]).and_then(|pressure| {
-        Ok([pressure, replay.gap_at(&states[k])?, replay.plastic_depth_at(&states[k])?])
+    let fields = replay.fields_at(&states[k]).map(|fields| fields.pressure).and_then(|pressure| {
+        Ok([
+            pressure,
+            replay.fields_at(&states[k])?.gap,
+            replay.fields_at(&states[k])?.plastic_depth,
+        ])
     });
     match fields {
         Ok([pressure, gap, depth]) => {
@@ -206,7 +210,7 @@ fn read(bytes: &[u8], scratch: &Scratch) -> Verdict {
     if record.grid().nodes() <= SMALL && record.states().len() <= SMALL {
         // Answers or errors: numbers that somebody has changed are no path.
         if let (Ok(mut replay), Some(last)) = (record.replay(), record.states().last()) {
-            let _ = replay.pressure_at(last);
+            let _ = replay.fields_at(last).map(|fields| fields.pressure);
         }
         if let Ok(path) = record.resume() {
             for state in path.take(SMALL) {

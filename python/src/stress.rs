@@ -64,7 +64,8 @@ fn stress(
     angle: f64,
 ) -> Fallible<Stress> {
     let below = of_path(py, &path, poissons_ratio, (friction, angle))?;
-    let pressure = path.at(py, state, |engine, state| engine.pressure_at(state))?;
+    let pressure =
+        path.at(py, state, |engine, state| engine.fields_at(state).map(|fields| fields.pressure))?;
     Ok(Stress { below, pressure })
 }
 

@@ -123,7 +123,7 @@ impl Superposition {
     ///
     /// Those of [`Self::pressure`].
     pub fn displacement(&self, bed: &Bed, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
-        self.sum(bed, path, |path, state| path.displacement_at(state))
+        self.sum(bed, path, |path, state| Ok(path.fields_at(state)?.displacement))
     }
 
     /// By how much gaps change, `∫ φ dg` \[m\]; with the initial gap this is what is left of it.
@@ -132,7 +132,7 @@ impl Superposition {
     ///
     /// Those of [`Self::pressure`].
     pub fn gap_change(&self, bed: &Bed, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
-        let mut sum = self.sum(bed, path, |path, state| path.gap_at(state))?;
+        let mut sum = self.sum(bed, path, |path, state| Ok(path.fields_at(state)?.gap))?;
         // At first touch the gap is the initial one, where pressure and displacement are none.
         if let Some(first) = self.pieces.first() {
             for (value, initial) in sum.iter_mut().zip(path.problem().initial_gap()) {

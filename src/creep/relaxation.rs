@@ -153,7 +153,7 @@ impl<'a> Relaxation<'a> {
     /// Those of [`at`](Self::at) and of [`LoadingPath::gap_at`].
     pub fn gap(&self, time: f64, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         let apart = (-self.at(time)?.approach).max(0.0);
-        Ok(path.gap_at(&self.path_state(time)?)?.map(|gap| gap + apart))
+        Ok(path.fields_at(&self.path_state(time)?)?.gap.map(|gap| gap + apart))
     }
 }
 

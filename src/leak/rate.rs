@@ -95,7 +95,7 @@ impl Seal {
     ///
     /// Those of [`LoadingPath::gap_at`] and of [`Self::leak`].
     pub fn leak_at(&self, path: &mut LoadingPath, state: &LoadingState) -> Result<Leak, Error> {
-        let gap = path.gap_at(state)?;
+        let gap = path.fields_at(state)?.gap;
         let contact_map = path.contact_map_at(state)?;
         let on = (&path.grid(), path.problem().boundary());
         self.leak(&gap, &contact_map, on)

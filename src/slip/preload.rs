@@ -261,7 +261,7 @@ impl<'a> PartialSlip<'a> {
     ) -> Result<DMatrix<f64>, Error> {
         let stick = self.stick(tangential_load)?;
         let zones = self.zones(path, tangential_load)?;
-        let gap = path.gap_at(&self.bed.path_state(stick.load)?)?;
+        let gap = path.fields_at(&self.bed.path_state(stick.load)?)?.gap;
         let scale = tangential_load.signum() * self.friction.displacement_per_approach();
         Ok(gap.zip_map(&zones, |gap, zone| match zone {
             SlipZone::Slip => scale * gap.max(0.0),

@@ -9,7 +9,7 @@ use asperity::updater::ConjugateGradient;
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq,
 };
-use asperity_studies::smallest_gap::{Extremes, LoadingPath, SmallestGap};
+use asperity_studies::smallest_gap::{EitherPath, Extremes, SmallestGap};
 use asperity_testing::dense::influence_matrix;
 use nalgebra::{DMatrix, DVector};
 
@@ -124,7 +124,7 @@ struct Faults {
     backward: usize,
 }
 
-fn faults(mut path: impl LoadingPath) -> Faults {
+fn faults(mut path: impl EitherPath) -> Faults {
     let mut faults = Faults::default();
     let mut approach = 0.0;
     while let Some(state) = path.next() {

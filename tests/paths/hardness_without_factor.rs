@@ -482,13 +482,18 @@ fn every_state_can_be_asked_for_its_fields() {
         }
         for state in states.iter().step_by(41).chain(states.last()) {
             assert_eq!(path.contact_map_at(state).unwrap(), exact.contact_map_at(state).unwrap());
-            assert_eq!(path.yielded_map_at(state).unwrap(), exact.yielded_map_at(state).unwrap());
+            assert_eq!(
+                path.fields_at(state).unwrap().yielded_map,
+                exact.fields_at(state).unwrap().yielded_map
+            );
             let [found, expected] =
-                [path.pressure_at(state).unwrap(), exact.pressure_at(state).unwrap()];
+                [path.fields_at(state).unwrap().pressure, exact.fields_at(state).unwrap().pressure];
             // Of the same contact at the same approach: gaps of 1e-10 of that, times a condition number.
             assert!((found - expected).amax() < 1e-7, "{name}, {}", state.step);
-            let [found, expected] =
-                [path.plastic_depth_at(state).unwrap(), exact.plastic_depth_at(state).unwrap()];
+            let [found, expected] = [
+                path.fields_at(state).unwrap().plastic_depth,
+                exact.fields_at(state).unwrap().plastic_depth,
+            ];
             assert!((found - &expected).amax() <= 1e-8 * expected.amax(), "{name}, {}", state.step);
         }
     }
@@ -540,7 +545,7 @@ fn the_default_hands_over_at_the_same_events() {
             let whole: Vec<_> = history.states().iter().copied().chain(rest).collect();
             compare(&format!("budget {more}, resumed at {k}"), &whole, &exact, &BETWEEN);
             // Iterations for an earlier state need as much room as those of the path.
-            let pressure = match path.pressure_at(&found[k / 2]) {
+            let pressure = match path.fields_at(&found[k / 2]).map(|fields| fields.pressure) {
                 Err(Error::MemoryBudget { .. }) if more < 3_000_000 => continue,
                 pressure => pressure.unwrap(),
             };
@@ -575,10 +580,14 @@ fn records_of_paths_without_a_factor() {
             let read = LoadingRecord::read_npz(&file).unwrap();
             std::fs::remove_file(&file).unwrap();
             assert_eq!(read.states(), record.states());
-            for mut again in [read.replay().unwrap(), builder().resume(read.history()).unwrap()] {
+            for mut again in
+                [read.replay().unwrap(), builder().resume(read.history()).unwrap().into_path()]
+            {
                 let state = record.states()[at / 2];
-                let [a, b] =
-                    [again.pressure_at(&state).unwrap(), path.pressure_at(&state).unwrap()];
+                let [a, b] = [
+                    again.fields_at(&state).unwrap().pressure,
+                    path.fields_at(&state).unwrap().pressure,
+                ];
                 assert!((a - b).amax() <= 1e-8, "{name}, {at}");
                 let rest: Vec<_> = again.by_ref().map(Result::unwrap).collect();
                 let whole: Vec<_> = record.states().iter().copied().chain(rest).collect();

@@ -131,7 +131,11 @@ fn lying_updaters() {
                         ] {
                             assert!(value.is_finite(), "{what}: {state:?}");
                         }
-                        let _ = (path.pressure(), path.gap(), path.certificate());
+                        let _ = (
+                            path.fields().map(|fields| fields.pressure),
+                            path.fields().map(|fields| fields.gap),
+                            path.certificate(),
+                        );
                     }
                     // On these half-spaces contact grows to its end: what ends it early is an error.
                     assert_ne!(path.end(), Some(LoadingEnd::NoMoreEvents), "{what} {turn}");

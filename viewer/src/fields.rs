@@ -1,5 +1,6 @@
 //! Pressure and gap at some states spread over the path, in few levels.
 
+use asperity::contact::ContactFields;
 use asperity::loading::History;
 use asperity::nalgebra::DMatrix;
 use asperity::{Error, Grid, LoadingPath};
@@ -43,8 +44,7 @@ impl Field {
     fn of(
         place: usize,
         in_contact: Vec<bool>,
-        pressure: &DMatrix<f64>,
-        gap: &DMatrix<f64>,
+        ContactFields { pressure, gap, .. }: &ContactFields,
     ) -> Self {
         let greatest = |field: &DMatrix<f64>| field.iter().copied().fold(0.0, f64::max);
         let most = (greatest(pressure), greatest(gap));
@@ -76,9 +76,9 @@ pub(crate) fn of(
     let (mut found, mut last) = (Vec::new(), None);
     for place in chosen(history) {
         let Some(state) = history.states().get(place) else { continue };
-        let (pressure, gap) = path.pressure_and_gap_at(state)?;
-        found.push(Field::of(place, contact_at(place), &pressure, &gap));
-        last = Some(pressure);
+        let fields = path.fields_at(state)?;
+        found.push(Field::of(place, contact_at(place), &fields));
+        last = Some(fields.pressure);
     }
     let room = LETTERS.max((LETTERS_PER_NODE * grid.nodes()).saturating_sub(taken));
     let mut page = Value::Null;

@@ -198,9 +198,10 @@ impl<'a> Followed<'a> {
             return Ok(Vec::new());
         };
         let (pressure, gap) = match &self.solution {
-            Solution::Creep(creep) => {
-                (creep.pressure(last.time, pieces)?, path.gap_at(&creep.path_state(last.time)?)?)
-            }
+            Solution::Creep(creep) => (
+                creep.pressure(last.time, pieces)?,
+                path.fields_at(&creep.path_state(last.time)?)?.gap,
+            ),
             Solution::Relaxation(relaxation) => {
                 (relaxation.pressure(last.time, pieces)?, relaxation.gap(last.time, &mut path)?)
             }

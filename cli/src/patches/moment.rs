@@ -52,8 +52,8 @@ impl Moment {
         let failed = |error| Failure::new("cannot compute the fields of the state", error);
         let mut path = record.replay().map_err(failed)?;
         let contact_map = path.contact_map_at(&state).map_err(failed)?;
-        let pressure = path.pressure_at(&state).map_err(failed)?;
-        let gap = path.gap_at(&state).map_err(failed)?;
+        let pressure = path.fields_at(&state).map_err(failed)?.pressure;
+        let gap = path.fields_at(&state).map_err(failed)?.gap;
         let (grid, boundary) = (record.grid(), record.kernel().boundary);
         let found = Patches::new(&contact_map, &grid, boundary, connectivity).map_err(failed)?;
         let loads = found.loads(&pressure).map_err(failed)?;

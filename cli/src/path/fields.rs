@@ -28,11 +28,11 @@ pub(crate) type Fields = Vec<(&'static str, DMatrix<f64>)>;
 pub(crate) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
     let failed = |error| Failure::new("cannot compute the fields of the last state", error);
     let mut fields = vec![
-        ("pressure", solver.pressure().map_err(failed)?),
-        ("gap", solver.gap().map_err(failed)?),
+        ("pressure", solver.fields().map_err(failed)?.pressure),
+        ("gap", solver.fields().map_err(failed)?.gap),
     ];
     if solver.hardness_map().is_some() {
-        fields.push(("plastic_depth", solver.plastic_depth().map_err(failed)?));
+        fields.push(("plastic_depth", solver.fields().map_err(failed)?.plastic_depth));
     }
     Ok(fields)
 }

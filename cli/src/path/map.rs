@@ -10,8 +10,9 @@ use asperity_cli::outcome::Failure;
 /// Draws the present state of a path into a directory.
 pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<PathBuf, Failure> {
     let pressure = solver
-        .pressure()
-        .map_err(|error| Failure::new("cannot compute the pressure for the map", error))?;
+        .fields()
+        .map_err(|error| Failure::new("cannot compute the pressure for the map", error))?
+        .pressure;
     let Some(state) = solver.state() else {
         return Err(Failure::request("there is no state to draw a map of"));
     };
@@ -20,7 +21,7 @@ pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<P
         &state.contact,
         &pressure,
         &solver.contact_map(),
-        job.has_hardness().then(|| solver.yielded_map()).as_ref(),
+        job.has_hardness().then(|| solver.fields().map(|fields| fields.yielded_map)).as_ref(),
         &directory.join("contact_map.png"),
     )
 }

@@ -52,7 +52,7 @@ impl<'a> Moment<'a> {
             })?,
         };
         let mut path = record.replay().map_err(failed)?;
-        let pressure = path.pressure_at(&state).map_err(failed)?;
+        let pressure = path.fields_at(&state).map_err(failed)?.pressure;
         let friction = (options.friction, options.angle);
         Ok(Self { record, path, state, pressure, friction })
     }

@@ -270,7 +270,8 @@ impl Creep {
         let field = match &self.course {
             Course::Load(_) => {
                 let state = self.grown(py, |grown| grown.path_state(time))?;
-                self.increments.field(py, |engine, _| engine.gap_at(&state))?
+                self.increments
+                    .field(py, |engine, _| engine.fields_at(&state).map(|fields| fields.gap))?
             }
             Course::Approach(approach) => {
                 let prony = self.law();

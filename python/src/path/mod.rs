@@ -179,7 +179,7 @@ impl LoadingPath {
         let e_star = self.e_star.filter(|_| !has_hardness);
         let engine = inner.engine_mut();
         let warnings = detached(py, move || {
-            let pressure = engine.pressure_at(&state)?;
+            let pressure = engine.fields_at(&state)?.pressure;
             of_contact(&pressure, &engine.contact_map_at(&state)?, (&grid, boundary), e_star)
         });
         Ok(warnings??)
@@ -383,7 +383,7 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.pressure_at(state))
+        self.field(py, state, |engine, state| engine.fields_at(state).map(|fields| fields.pressure))
     }
 
     /// Gap [m] at a state: zero in contact, to rounding.
@@ -402,7 +402,7 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.gap_at(state))
+        self.field(py, state, |engine, state| engine.fields_at(state).map(|fields| fields.gap))
     }
 
     /// Displacement of the half-space [m] at a state, positive into it; about its mean on a periodic half-space.
@@ -421,7 +421,9 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.displacement_at(state))
+        self.field(py, state, |engine, state| {
+            engine.fields_at(state).map(|fields| fields.displacement)
+        })
     }
 
     /// Which nodes are in contact at a state.
@@ -459,7 +461,9 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<bool>>> {
-        self.field(py, state, |engine, state| engine.yielded_map_at(state))
+        self.field(py, state, |engine, state| {
+            engine.fields_at(state).map(|fields| fields.yielded_map)
+        })
     }
 
     /// Plastic depth [m] at a state: by how much yielded nodes would overlap, 0 elsewhere.
@@ -478,7 +482,9 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.plastic_depth_at(state))
+        self.field(py, state, |engine, state| {
+            engine.fields_at(state).map(|fields| fields.plastic_depth)
+        })
     }
 
     /// The surface with the plastic depth of a state taken off: that of elastic unloading from there.
@@ -554,7 +560,7 @@ impl LoadingPath {
         let axis = choice::axis(axis)?;
         let Setting { grid, boundary, .. } = self.setting;
         let found = self.at(py, state, |engine, state| {
-            let (gap, contact) = (engine.gap_at(state)?, engine.contact_map_at(state)?);
+            let (gap, contact) = (engine.fields_at(state)?.gap, engine.contact_map_at(state)?);
             constriction(&gap, &contact, (&grid, boundary), axis)
         })?;
         found
@@ -603,10 +609,10 @@ impl LoadingPath {
             let mut written = Vec::new();
             if let (true, Some(state)) = (fields, inner.present()) {
                 let engine = inner.engine_mut();
-                written.push(("pressure", engine.pressure_at(&state)?));
-                written.push(("gap", engine.gap_at(&state)?));
+                written.push(("pressure", engine.fields_at(&state)?.pressure));
+                written.push(("gap", engine.fields_at(&state)?.gap));
                 if has_hardness {
-                    written.push(("plastic_depth", engine.plastic_depth_at(&state)?));
+                    written.push(("plastic_depth", engine.fields_at(&state)?.plastic_depth));
                 }
             }
             let written: Vec<_> = written.iter().map(|(name, field)| (*name, field)).collect();

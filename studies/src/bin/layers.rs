@@ -159,8 +159,8 @@ fn padded(text: &mut String) -> Result<(), Error> {
             let surface = asperity::HeightMap::new(heights)?;
             let mut solver =
                 FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-10).build()?;
-            let found = solver.solve(expected.state.load)?;
-            let difference = found.max_pressure() / expected.max_pressure() - 1.0;
+            let found = solver.solve(expected.contact.load)?;
+            let difference = found.fields.max_pressure() / expected.fields.max_pressure() - 1.0;
             let _ = write!(text, " {difference:.1e} |");
         }
         text.push('\n');
@@ -239,15 +239,15 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
 fn load_at(solver: &mut FixedLoadSolver, fraction: f64) -> Result<f64, Error> {
     let mut solution = solver.solve_target(ContactTarget::MeanGap(1.0))?;
     for _ in 0..20 {
-        let ratio = fraction / solution.state.contact_area_fraction;
+        let ratio = fraction / solution.contact.contact_area_fraction;
         if (ratio - 1.0).abs() < 0.01 {
             break;
         }
         // Full contact is far from a proportion.
-        let load = solution.state.load * ratio.powf(if fraction > 0.5 { 1.3 } else { 1.1 });
+        let load = solution.contact.load * ratio.powf(if fraction > 0.5 { 1.3 } else { 1.1 });
         solution = solver.solve(load)?;
     }
-    Ok(solution.state.load)
+    Ok(solution.contact.load)
 }
 
 /// Steps and convolutions of a single load, and of a stretch of the path from there.
@@ -261,11 +261,11 @@ fn load_and_stretch(
     let load = load_at(solver, fraction)?;
     let solution = solver.solve(load)?;
     let load = solution.effort.convolutions.to_string();
-    let nodes = (0..grid.nodes()).filter(|&node| solution.contact_map.as_slice()[node]);
+    let nodes = (0..grid.nodes()).filter(|&node| solution.fields.contact_map.as_slice()[node]);
     let history: History = (1..)
         .zip(nodes)
         .map(|(count, node)| {
-            let mut contact = solution.state;
+            let mut contact = solution.contact;
             contact.contact_nodes = count;
             LoadingState::new(count, ContactEvent::Touch, grid.coordinates(node), contact)
         })

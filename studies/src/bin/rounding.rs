@@ -86,11 +86,11 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
         if !state.contact.contact_nodes.is_multiple_of(every) && !is_last {
             continue;
         }
-        let pressure = path.pressure()?;
-        let displacement = path.displacement()?;
+        let pressure = path.fields()?.pressure;
+        let displacement = path.fields()?.displacement;
         let certificate = path.certificate()?;
         let energy = 0.5 * cell * pressure.dot(&displacement);
-        let single = loads.solve(state.contact.load)?.state;
+        let single = loads.solve(state.contact.load)?.contact;
         let stiffness = [state.contact.contact_stiffness, single.contact_stiffness];
         let [Some(own), Some(other)] = stiffness else {
             return Err("there is no contact stiffness".into());
@@ -99,7 +99,7 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
             "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |",
             state.contact.contact_nodes,
             relative(state.contact.load, cell * pressure.sum()),
-            relative(state.contact.mean_gap, path.gap()?.mean()),
+            relative(state.contact.mean_gap, path.fields()?.gap.mean()),
             relative(state.contact.energy, energy),
             relative(own, other),
             relative(state.contact.approach, single.approach),

@@ -55,7 +55,7 @@ impl Rules {
         eprintln!("rules: {steps} nodes of {nodes} x {nodes} by each");
         let half_space = Boussinesq::new(grid, E_STAR).map_err(failed)?;
         let exact = LoadingSolver::builder(&heights, &half_space).max_nodes(steps).build();
-        let exact = exact.and_then(examine).map_err(failed)?;
+        let exact = exact.and_then(|path| examine(path.into_path())).map_err(failed)?;
         let smallest_gap = SmallestGap::new(&heights, &half_space, steps);
         let smallest_gap = smallest_gap.and_then(examine).map_err(failed)?;
         let sq = heights.rms_height();

@@ -75,8 +75,9 @@ fn write(directory: &Path) -> Result<(), Failure> {
         write_npy(directory.join(&heights), rough.heights.matrix()).map_err(unwritten)?;
         for (number, solved) in ours::solve(rough).map_err(failed)?.iter().enumerate() {
             let pressure = format!("pressure{place}_{number}.npy");
-            write_npy(directory.join(&pressure), &solved.solution.pressure).map_err(unwritten)?;
-            let state = &solved.solution.state;
+            write_npy(directory.join(&pressure), &solved.solution.fields.pressure)
+                .map_err(unwritten)?;
+            let state = &solved.solution.contact;
             let stiffness = state.interfacial_stiffness.unwrap_or(f64::NAN);
             let (lx, ly) = rough.grid.sides();
             let numbers = [lx, ly, solved.mean_pressure].map(|x| x.to_string());
