@@ -37,7 +37,6 @@ use asperity::bed::Bed;
 use asperity::creep::{
     Corners, Course, Creep, CycleSettings, Prony, Relaxation, Steps, ViscoelasticBed,
 };
-use asperity::loading::History;
 use asperity::patches::{Connectivity, Percolation, contact_sequence};
 use asperity::surface::Amplitude;
 use asperity::{
@@ -53,7 +52,7 @@ fn main() -> Result<(), Error> {
     let rubber = Prony::shares(&[(0.1, 0.3), (10.0, 0.5)])?;
 
     let mut path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.7).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     let bed = Bed::new(&history)?;
 
     // A load put on within a second and held: in closed form.

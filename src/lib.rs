@@ -18,7 +18,7 @@
 //!     let contact = state?.contact;
 //!     println!("{} nodes carry {} N", contact.contact_nodes, contact.load);
 //! }
-//! let pressure = path.pressure()?; // at exactly 100 MPa
+//! let pressure = path.fields()?.pressure; // at exactly 100 MPa
 //! # assert!(pressure.max() > 100e6);
 //! # Ok(())
 //! # }

@@ -112,7 +112,7 @@ impl Superposition {
     ///
     /// # Errors
     ///
-    /// [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore), and those of [`LoadingPath::pressure_at`].
+    /// [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore), and those of [`LoadingPath::fields_at`].
     pub fn pressure(&self, bed: &Bed, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         self.sum(bed, path, |path, state| path.pressure_at(state))
     }

@@ -23,7 +23,6 @@ use crate::{CreepError, Error};
 /// ```
 /// use asperity::bed::Bed;
 /// use asperity::creep::{Corners, Creep, Prony};
-/// use asperity::loading::History;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
@@ -31,7 +30,7 @@ use crate::{CreepError, Error};
 /// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 ///     .max_load(500.0)
 ///     .build()?;
-/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// let history = path.run()?;
 /// let bed = Bed::new(&history)?;
 ///
 /// // 200 N at once, on bodies of which half of the modulus relaxes in a second.
@@ -125,7 +124,7 @@ impl<'a> Creep<'a> {
     }
 
     /// The state of the elastic path whose contact, gap and approach those of a time are: for
-    /// [`gap_at`](crate::LoadingSolver::gap_at), [`contact_map_at`](crate::LoadingSolver::contact_map_at), and
+    /// [`fields_at`](crate::LoadingPath::fields_at), [`contact_map_at`](crate::LoadingPath::contact_map_at), and
     /// [`patches`](crate::patches). Its load is the effective one, and its pressure not that of the time.
     ///
     /// # Errors

@@ -150,7 +150,7 @@ impl<'a> Relaxation<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`at`](Self::at) and of [`LoadingPath::gap_at`].
+    /// Those of [`at`](Self::at) and of [`LoadingPath::fields_at`].
     pub fn gap(&self, time: f64, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         let apart = (-self.at(time)?.approach).max(0.0);
         Ok(path.fields_at(&self.path_state(time)?)?.gap.map(|gap| gap + apart))

@@ -111,7 +111,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
         Ok(UnloadingState { time, load: self.creep.load(time), contact_time, contact })
     }
 
-    /// The state of the path that has this contact: for [`contact_map_at`](crate::LoadingSolver::contact_map_at).
+    /// The state of the path that has this contact: for [`contact_map_at`](crate::LoadingPath::contact_map_at).
     ///
     /// # Errors
     ///

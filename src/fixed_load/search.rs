@@ -20,6 +20,11 @@ pub(super) fn solve_target(
 ) -> Result<FixedLoadSolution, Error> {
     match target {
         ContactTarget::Load(load) => stepper.step_to_load(load),
+        ContactTarget::MeanPressure(mean_pressure) => {
+            let mean_pressure = Error::require_positive("mean pressure", mean_pressure)?;
+            let area = stepper.finest().grid.nominal_area();
+            stepper.step_to_load(mean_pressure * area)
+        }
         ContactTarget::Approach(approach) if stepper.finds_approach() => {
             let target = Error::require_positive("approach", approach)?;
             let unloaded = stepper.finest().mean_initial_gap();

@@ -93,7 +93,7 @@ impl Seal {
     ///
     /// # Errors
     ///
-    /// Those of [`LoadingPath::gap_at`] and of [`Self::leak`].
+    /// Those of [`LoadingPath::fields_at`] and of [`Self::leak`].
     pub fn leak_at(&self, path: &mut LoadingPath, state: &LoadingState) -> Result<Leak, Error> {
         let gap = path.fields_at(state)?.gap;
         let contact_map = path.contact_map_at(state)?;

@@ -42,7 +42,6 @@ pub(super) struct Settings<'a> {
     window_size: Option<usize>,
     max_nodes: Option<usize>,
     targets: Vec<ContactTarget>,
-    max_mean_pressure: Option<f64>,
     memory_budget: Option<usize>,
     hardness: Limit<'a>,
 }
@@ -55,7 +54,6 @@ impl fmt::Debug for Settings<'_> {
             .field("window_size", &self.window_size)
             .field("max_nodes", &self.max_nodes)
             .field("targets", &self.targets)
-            .field("max_mean_pressure", &self.max_mean_pressure)
             .field("memory_budget", &self.memory_budget)
             .field("has_hardness", &!matches!(self.hardness, Limit::None))
             .finish_non_exhaustive()
@@ -129,7 +127,6 @@ impl<'a> LoadingBuilder<'a> {
             window_size: None,
             max_nodes: None,
             targets: Vec::new(),
-            max_mean_pressure: None,
             memory_budget: None,
             hardness: Limit::None,
         };
@@ -158,7 +155,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         self
     }
 
-    /// Ends the path at a target: at exactly this load, approach or mean gap, or with as many nodes in
+    /// Ends the path at a target: at exactly this load, mean pressure, approach or mean gap, or with as many nodes in
     /// contact as fit into this fraction of the nominal area. Of several targets the first one reached
     /// counts; of several of one kind the last one given.
     pub fn until(mut self, target: ContactTarget) -> Self {
@@ -172,9 +169,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     }
 
     /// Ends the path at exactly this load over the nominal area \[Pa\].
-    pub fn max_mean_pressure(mut self, mean_pressure: f64) -> Self {
-        self.settings.max_mean_pressure = Some(mean_pressure);
-        self
+    pub fn max_mean_pressure(self, mean_pressure: f64) -> Self {
+        self.until(ContactTarget::MeanPressure(mean_pressure))
     }
 
     /// Ends the path at exactly this approach \[m\].
@@ -350,11 +346,6 @@ impl<'a> Settings<'a> {
         let mut limits = Limits::default();
         for &target in &self.targets {
             limits.set(target, &grid, problem.mean_gap())?;
-        }
-        if let Some(mean_pressure) = self.max_mean_pressure {
-            let mean_pressure = Error::require_positive("greatest mean pressure", mean_pressure)?;
-            let load = ContactTarget::Load(mean_pressure * grid.nominal_area());
-            limits.set(load, &grid, problem.mean_gap())?;
         }
         if let Some(nodes) = self.max_nodes {
             limits.set_nodes(nodes)?;

@@ -587,7 +587,7 @@ fn questions_that_fail_do_not_disturb_the_path() -> Result<(), Error> {
                     let earlier = states[states.len() / 2];
                     strike.at.store(strike.calls.load(Relaxed) + ahead, Relaxed);
                     let asked = catch_unwind(AssertUnwindSafe(|| {
-                        path.fields()?.pressure;
+                        path.fields()?;
                         path.pressure_at(&earlier)?;
                         path.certificate()
                     }));

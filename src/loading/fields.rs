@@ -45,6 +45,16 @@ impl LoadingPath {
         releases.with_yielded(releases.contact_at(self.run.contact.order(), step), step)
     }
 
+    /// Which nodes have yielded at a state up to the present one, with a [hardness](super::LoadingBuilder::hardness).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StateNotReached`].
+    pub fn yielded_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error> {
+        self.check_reached(state)?;
+        Ok(self.yielded_by(state.step))
+    }
+
     fn yielded_by(&self, step: usize) -> DMatrix<bool> {
         let mut map = DMatrix::from_element(self.grid().nx(), self.grid().ny(), false);
         for node in self.run.releases.yielded_at(step) {

@@ -8,6 +8,7 @@ use super::estimated::Estimated;
 use super::estimated::leaving::Attempt;
 use super::exact::Exact;
 use super::factor_log::FactorLog;
+use super::history::History;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::Phase;
 use super::rule::ContactRule;
@@ -81,6 +82,15 @@ impl LoadingPath {
         self.limits = limits;
         self.end = None;
         Ok(())
+    }
+
+    /// All states to come, up to the end of the path.
+    ///
+    /// # Errors
+    ///
+    /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate to keep them.
+    pub fn run(&mut self) -> Result<History, Error> {
+        self.by_ref().collect()
     }
 
     /// The next state, `None` at the end of the path.
@@ -337,6 +347,8 @@ mod tests {
         let mut path = LoadingSolver::builder(&surface, &kernel).max_approach(2.0).build()?;
         assert_eq!(path.size_hint(), (0, Some(5)));
         assert_eq!((path.state(), path.end()), (None, None));
+        let all = LoadingSolver::builder(&surface, &kernel).max_approach(2.0).build()?.run()?;
+        assert_eq!(all.states().len(), 3);
         let none = path.present().err().map(|error| error.to_string());
         let told =
             "number of states yielded so far must be at least 1 for a present state, but is 0";

@@ -5,7 +5,6 @@
 //! ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)).
 //!
 //! ```
-//! use asperity::loading::History;
 //! use asperity::record::LoadingRecord;
 //! use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};
 //!
@@ -14,13 +13,13 @@
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 //!     .max_load(500.0)
 //!     .build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let record = LoadingRecord::new(&path, history)?;
 //!
 //! // Fields of a state, without the path:
 //! let at_100_newtons = record.history().at(ContactTarget::Load(100.0))?;
 //! let mut replay = record.replay()?;
-//! let pressure = replay.pressure_at(&at_100_newtons)?;
+//! let pressure = replay.fields_at(&at_100_newtons)?.pressure;
 //! # assert!(pressure.max() > 0.0);
 //!
 //! // And on to 600 N:
@@ -321,7 +320,7 @@ impl LoadingRecord {
     }
 
     /// The path as it was, for the fields of its states
-    /// ([`LoadingPath::pressure_at`]): each is one solution on a known contact set, without a factor.
+    /// ([`LoadingPath::fields_at`]): each is one solution on a known contact set, without a factor.
     ///
     /// # Errors
     ///

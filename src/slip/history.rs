@@ -29,7 +29,7 @@ use crate::{Error, LoadingPath, SlipError};
 /// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 ///     .max_load(500.0)
 ///     .build()?;
-/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// let history = path.run()?;
 /// let bed = Bed::new(&history)?;
 ///
 /// let mut joint = SlipHistory::new(&bed, Friction::new(0.3, 1.2)?);

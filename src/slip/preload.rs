@@ -235,7 +235,7 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::monotone`] and of [`LoadingPath::pressure_at`].
+    /// Those of [`Self::monotone`] and of [`LoadingPath::fields_at`].
     pub fn traction(
         &self,
         path: &mut LoadingPath,
@@ -253,7 +253,7 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::monotone`] and of [`LoadingPath::gap_at`].
+    /// Those of [`Self::monotone`] and of [`LoadingPath::fields_at`].
     pub fn slip(
         &self,
         path: &mut LoadingPath,
@@ -294,7 +294,7 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::slip`] and of [`LoadingPath::pressure_at`].
+    /// Those of [`Self::slip`] and of [`LoadingPath::fields_at`].
     pub fn friction_work(
         &self,
         path: &mut LoadingPath,

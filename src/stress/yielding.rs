@@ -35,7 +35,7 @@ impl Subsurface {
     /// # Errors
     ///
     /// [`Error::NotPositive`] for the yield stress; those of [`Self::survey`] and
-    /// [`LoadingPath::pressure_at`](LoadingPath::pressure_at).
+    /// [`LoadingPath::fields_at`](LoadingPath::fields_at).
     pub fn first_yield(
         &self,
         path: &mut LoadingPath,

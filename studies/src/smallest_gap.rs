@@ -64,11 +64,11 @@ impl EitherPath for LoadingPath {
     }
 
     fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
-        Self::pressure(self)
+        Ok(self.fields()?.pressure)
     }
 
     fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
-        Self::gap(self)
+        Ok(self.fields()?.gap)
     }
 }
 

@@ -158,7 +158,7 @@ fn the_papers_rule_gives_negative_pressures() {
         assert!(paper.backward > 10, "{paper:?}");
 
         let exact = LoadingSolver::builder(&heights, &kernel).max_nodes(most_nodes).build();
-        let exact = faults(exact.unwrap());
+        let exact = faults(exact.unwrap().into_path());
         assert_eq!((exact.negative_pressure, exact.overlap, exact.backward), (0, 0, 0));
         // The promise of the crate.
         assert!(exact.worst_pressure >= -1e-12 && exact.worst_gap >= -1e-12, "{exact:?}");

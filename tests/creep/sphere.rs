@@ -2,7 +2,6 @@
 
 use asperity::bed::Bed;
 use asperity::creep::{Corners, Creep, Prony};
-use asperity::loading::History;
 use asperity::reference::HertzSphere;
 use asperity::surface::Paraboloid;
 use asperity::{Boussinesq, Grid, LoadingSolver};
@@ -23,7 +22,7 @@ fn a_sphere_creeps_as_in_closed_form() {
         let surface = Paraboloid::new(radius).unwrap();
         let builder = LoadingSolver::builder(&surface, &half_space);
         let mut path = builder.max_load(5.1 * load).build().unwrap();
-        let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+        let history = path.run().unwrap();
         let bed = Bed::new(&history).unwrap();
         let creep = Creep::new(&bed, &body, &Corners::step(load).unwrap()).unwrap();
         let mut worst = [0.0_f64; 3];

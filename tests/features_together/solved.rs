@@ -126,9 +126,10 @@ pub(super) fn fields(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     for state in pressed.some() {
         let path = &mut pressed.path;
         let (contact, context) = (&state.contact, format!("{}, {}", pressed.row.name, state.step));
-        let pressure = path.fields_at(&state)?.pressure;
+        let fields = path.fields_at(&state)?;
         let tolerance = pressed.row.tolerance();
-        let truth = dense.scalars(pressure.as_slice(), contact.approach, tolerance, &context);
+        let truth =
+            dense.scalars(fields.pressure.as_slice(), contact.approach, tolerance, &context);
         let length = contact.approach.abs().max(contact.mean_gap);
         near(contact.load, truth.load, allowed * contact.load, &context);
         let scale = contact.energy + contact.plastic.map_or(0.0, |plastic| plastic.work);
@@ -137,10 +138,10 @@ pub(super) fn fields(pressed: &mut Pressed<'_>) -> Result<(), Error> {
         if let Some(approach) = truth.approach {
             near(contact.approach, approach, tolerance * length, &context);
         }
-        for (found, expected) in path.fields_at(&state)?.gap.iter().zip(&truth.gap) {
+        for (found, expected) in fields.gap.iter().zip(&truth.gap) {
             near(*found, *expected, tolerance * length, &context);
         }
-        for (found, expected) in path.fields_at(&state)?.plastic_depth.iter().zip(&truth.depth) {
+        for (found, expected) in fields.plastic_depth.iter().zip(&truth.depth) {
             near(*found, *expected, tolerance * length, &context);
         }
         let nodes = path.contact_map_at(&state)?.iter().filter(|is_in| **is_in).count();

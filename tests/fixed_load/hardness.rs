@@ -279,6 +279,13 @@ fn targets_and_sweeps() {
         let target = ContactTarget::MeanGap(solution.contact.mean_gap);
         let found = solver.solve_target(target).unwrap();
         near(found.contact.load / load, 1.0, 1e-6, name);
+        let pressure = ContactTarget::MeanPressure(load / grid().nominal_area());
+        assert_eq!(
+            solver.solve_target(pressure).unwrap().contact.contact_nodes,
+            solution.contact.contact_nodes
+        );
+        let refused = solver.solve_target(ContactTarget::MeanPressure(0.0)).unwrap_err();
+        assert!(matches!(refused, Error::NotPositive { quantity: "mean pressure", .. }));
         let fraction = solution.contact.contact_area_fraction;
         let found = solver.solve_target(ContactTarget::AreaFraction(fraction)).unwrap();
         assert_eq!(found.contact.contact_nodes, solution.contact.contact_nodes, "{name}");

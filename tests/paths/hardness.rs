@@ -545,7 +545,7 @@ fn a_hardness_for_each_node() {
         });
         let mut path =
             LoadingSolver::builder(&heights, &*kernel).hardness_map(&map).build().unwrap();
-        let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+        let history = path.run().unwrap();
         // What does not yield carries all the load in the end.
         assert_eq!(path.end(), Some(LoadingEnd::FullContact));
         let yielding = map.iter().filter(|value| value.is_finite()).count();

@@ -204,7 +204,7 @@ fn records_remember_what_was_asked() {
     let target = ContactTarget::AreaFraction(0.1234);
     let builder = LoadingSolver::builder(&surface, &kernel).until(target);
     let mut path = builder.build().unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     let record = LoadingRecord::new(&path, history).unwrap();
     assert_eq!(record.settings().targets, [target]);
 }
@@ -324,7 +324,7 @@ fn a_limit_is_no_event() {
     let load = 0.3 * all[99].contact.load + 0.7 * all[100].contact.load;
     let surface = rough(&grid(), 5);
     let mut path = LoadingSolver::builder(&surface, &kernel).max_load(load).build().unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     let record = LoadingRecord::new(&path, history).unwrap();
     assert_eq!(record.states().len(), 101);
     assert_eq!(record.contact().unwrap().len(), 100);

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use asperity::kernel::SemiPeriodicBoussinesq;
 #[cfg(feature = "io")]
-use asperity::loading::History;
 #[cfg(feature = "io")]
 use asperity::record::LoadingRecord;
 use asperity::reference::HertzLine;
@@ -159,7 +158,7 @@ fn records_are_gone_on_from() {
         let (_, whole) = followed(&kernel, &surface, 0.5, RecursiveCholesky::new());
         let builder = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.25);
         let mut path = builder.build().unwrap();
-        let begun: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+        let begun = path.run().unwrap();
         let record = LoadingRecord::new(&path, begun).unwrap();
         let name = format!("asperity-semi-{}-{along:?}.npz", std::process::id());
         let file = std::env::temp_dir().join(name);

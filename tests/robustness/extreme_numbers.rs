@@ -88,7 +88,7 @@ fn run(
     while let Some(state) = path.next() {
         states.push(state?);
         path.certificate()?;
-        path.fields()?.gap;
+        path.fields()?;
     }
     assert!(path.next().is_none());
     let history: History = states.iter().copied().collect();

@@ -2,7 +2,6 @@
 //! charts with a cursor that follows it, and what the record says of surface, bodies and exactness.
 //!
 //! ```
-//! use asperity::loading::History;
 //! use asperity::record::LoadingRecord;
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 //! use asperity_report::{Report, Source};
@@ -10,7 +9,7 @@
 //! # fn main() -> Result<(), asperity::Error> {
 //! let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let record = LoadingRecord::new(&path, history)?;
 //! let mut report = Report::new();
 //! report.add(Source::new("ground steel", &record).computed_by(&mut path))?;

@@ -179,8 +179,8 @@ impl LoadingPath {
         let e_star = self.e_star.filter(|_| !has_hardness);
         let engine = inner.engine_mut();
         let warnings = detached(py, move || {
-            let pressure = engine.fields_at(&state)?.pressure;
-            of_contact(&pressure, &engine.contact_map_at(&state)?, (&grid, boundary), e_star)
+            let fields = engine.fields_at(&state)?;
+            of_contact(&fields.pressure, &fields.contact_map, (&grid, boundary), e_star)
         });
         Ok(warnings??)
     }
@@ -461,9 +461,7 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<bool>>> {
-        self.field(py, state, |engine, state| {
-            engine.fields_at(state).map(|fields| fields.yielded_map)
-        })
+        self.field(py, state, |engine, state| engine.yielded_map_at(state))
     }
 
     /// Plastic depth [m] at a state: by how much yielded nodes would overlap, 0 elsewhere.
@@ -560,8 +558,8 @@ impl LoadingPath {
         let axis = choice::axis(axis)?;
         let Setting { grid, boundary, .. } = self.setting;
         let found = self.at(py, state, |engine, state| {
-            let (gap, contact) = (engine.fields_at(state)?.gap, engine.contact_map_at(state)?);
-            constriction(&gap, &contact, (&grid, boundary), axis)
+            let fields = engine.fields_at(state)?;
+            constriction(&fields.gap, &fields.contact_map, (&grid, boundary), axis)
         })?;
         found
             .map(|found| {
@@ -608,11 +606,10 @@ impl LoadingPath {
             let record = inner.record()?;
             let mut written = Vec::new();
             if let (true, Some(state)) = (fields, inner.present()) {
-                let engine = inner.engine_mut();
-                written.push(("pressure", engine.fields_at(&state)?.pressure));
-                written.push(("gap", engine.fields_at(&state)?.gap));
+                let fields = inner.engine_mut().fields_at(&state)?;
+                written.extend([("pressure", fields.pressure), ("gap", fields.gap)]);
                 if has_hardness {
-                    written.push(("plastic_depth", engine.fields_at(&state)?.plastic_depth));
+                    written.push(("plastic_depth", fields.plastic_depth));
                 }
             }
             let written: Vec<_> = written.iter().map(|(name, field)| (*name, field)).collect();

@@ -5,6 +5,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use asperity::contact::ContactFields;
 use asperity::surface::HeightMap;
 use asperity::updater::RecursiveCholesky;
 use asperity::{
@@ -86,8 +87,7 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
         if !state.contact.contact_nodes.is_multiple_of(every) && !is_last {
             continue;
         }
-        let pressure = path.fields()?.pressure;
-        let displacement = path.fields()?.displacement;
+        let ContactFields { pressure, displacement, gap, .. } = path.fields()?;
         let certificate = path.certificate()?;
         let energy = 0.5 * cell * pressure.dot(&displacement);
         let single = loads.solve(state.contact.load)?.contact;
@@ -99,7 +99,7 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
             "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |",
             state.contact.contact_nodes,
             relative(state.contact.load, cell * pressure.sum()),
-            relative(state.contact.mean_gap, path.fields()?.gap.mean()),
+            relative(state.contact.mean_gap, gap.mean()),
             relative(state.contact.energy, energy),
             relative(own, other),
             relative(state.contact.approach, single.approach),

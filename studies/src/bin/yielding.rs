@@ -100,9 +100,8 @@ fn metals(directory: &Path, text: &mut String) -> Result<Vec<PathBuf>, Failure> 
     // The map at 10 %.
     let history: History = yielding.iter().copied().collect();
     let state = history.at_area_fraction(0.1).ok_or_else(|| Failure::request("no such area"))?;
-    let pressure = path.fields_at(&state).map_err(failed)?.pressure;
-    let contact = path.contact_map_at(&state).map_err(failed)?;
-    let yielded = path.fields_at(&state).map_err(failed)?.yielded_map;
+    let fields = path.fields_at(&state).map_err(failed)?;
+    let (pressure, contact, yielded) = (fields.pressure, fields.contact_map, fields.yielded_map);
     let values =
         DMatrix::from_fn(256, 256, |ix, iy| match (contact[(ix, iy)], yielded[(ix, iy)]) {
             (false, _) => f64::NAN,

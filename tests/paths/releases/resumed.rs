@@ -105,7 +105,7 @@ fn records_with_releases_are_read_back() {
 
     for (number, (kernel, gaps, all)) in cases(3).enumerate() {
         let mut path = kernel.path(&gaps);
-        let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+        let history = path.run().unwrap();
         let record = LoadingRecord::new(&path, history).unwrap();
         let name = format!("asperity-releases-{}-{number}.npz", std::process::id());
         let file = std::env::temp_dir().join(name);
