@@ -166,7 +166,7 @@ impl<'a> Bed<'a> {
     /// # Errors
     ///
     /// Those of [`Self::new`].
-    pub fn of(record: &'a LoadingRecord) -> Result<Self, Error> {
+    pub fn of_record(record: &'a LoadingRecord) -> Result<Self, Error> {
         Self::new(record.history())
     }
 

@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use super::corners::Corners;
 use super::growth::{Growth, Kernel};
 use super::hereditary::Hereditary;
+use super::piecewise_linear::PiecewiseLinear;
 use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
 use crate::bed::{Bed, Superposition};
@@ -19,7 +19,7 @@ use crate::{BedError, CreepError, Error, LoadingPath};
 ///
 /// ```
 /// use asperity::bed::Bed;
-/// use asperity::creep::{Corners, Prony, Relaxation};
+/// use asperity::creep::{PiecewiseLinear, Prony, Relaxation};
 /// use asperity::loading::History;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
@@ -30,7 +30,7 @@ use crate::{BedError, CreepError, Error, LoadingPath};
 /// let bed = Bed::new(&history)?;
 /// let rubber = Prony::shares(&[(1.0, 0.5)])?;
 /// let approach = bed.at_load(200.0)?.approach;
-/// let held = Relaxation::new(&bed, &rubber, &Corners::step(approach)?)?;
+/// let held = Relaxation::new(&bed, &rubber, &PiecewiseLinear::step(approach)?)?;
 /// assert!((held.at(0.0)?.load - 200.0).abs() < 1e-10);
 /// assert!((held.at(100.0)?.load - 100.0).abs() < 1e-10);
 /// # Ok(())
@@ -39,7 +39,7 @@ use crate::{BedError, CreepError, Error, LoadingPath};
 #[derive(Debug, Clone)]
 pub struct Relaxation<'a> {
     bed: &'a Bed<'a>,
-    approach: Corners,
+    approach: PiecewiseLinear,
     kernel: Kernel,
     /// The elastic load as the effective one.
     growth: Growth<'a>,
@@ -58,7 +58,7 @@ impl<'a> Relaxation<'a> {
     ///
     /// [`BedError`] if the elastic path has no state at an approach, other than that it ends before; [`Error::NotHomogeneous`] for a path
     /// on layers of several materials.
-    pub fn new(bed: &'a Bed<'a>, prony: &Prony, approach: &Corners) -> Result<Self, Error> {
+    pub fn new(bed: &'a Bed<'a>, prony: &Prony, approach: &PiecewiseLinear) -> Result<Self, Error> {
         bed.history().layering().check(Theory::Creep)?;
         let Elastic { knots, recedes, ends } = Elastic::along(bed, approach)?;
         let elastic = Hereditary::creep(&Prony::elastic(1.0)?, &knots);
@@ -166,7 +166,7 @@ struct Elastic {
 }
 
 impl Elastic {
-    fn along(bed: &Bed, approach: &Corners) -> Result<Self, Error> {
+    fn along(bed: &Bed, approach: &PiecewiseLinear) -> Result<Self, Error> {
         let (loads, approaches) = (bed.loads(), bed.approaches());
         let mut knots: Vec<(f64, f64)> = Vec::new();
         let mut before: Option<(f64, f64)> = None;

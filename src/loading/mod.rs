@@ -68,18 +68,12 @@
 //! within 10⁻⁹ of the approach with another one.
 
 mod builder;
-#[cfg(test)]
-#[allow(clippy::panic)]
-mod complementary;
 mod contradiction;
 mod cost;
 mod estimated;
 mod event_cost;
 mod exact;
 mod factor_log;
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod failing_iterations;
 mod fields;
 mod gap_field;
 mod history;
@@ -100,6 +94,12 @@ mod stepwise;
 mod sum;
 #[cfg(test)]
 mod test_chain;
+#[cfg(test)]
+#[allow(clippy::panic)]
+mod test_complementary;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod test_failing_iterations;
 mod tolerances;
 mod trial;
 mod tuning;

@@ -9,7 +9,7 @@ use super::state::ContactEvent;
 use super::tolerances::WindowTolerances;
 use super::window::{Course, Window, WindowEvent};
 use crate::updater::Dense;
-pub(super) use crate::updater::altered::Altered;
+pub(super) use crate::updater::test_altered::Altered;
 use crate::{Error, test_chain};
 
 /// A path that has not begun.

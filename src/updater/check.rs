@@ -261,7 +261,7 @@ fn check_error(
 mod tests {
     use super::*;
     use crate::surface::{Amplitude, SelfAffine};
-    use crate::updater::altered::Altered;
+    use crate::updater::test_altered::Altered;
     use crate::updater::{ConjugateGradient, Handover, RecursiveCholesky};
     use crate::{Boussinesq, Grid};
 

@@ -15,8 +15,6 @@
 //! Every updater answers exactly. Iterations offer a path more than that, cheap Schur complements that are nearly
 //! exact: with [`ConjugateGradient`] a path uses these and corrects them ([`loading`](crate::loading)).
 
-#[cfg(test)]
-pub(crate) mod altered;
 mod check;
 mod cholesky;
 mod conjugate_gradient;
@@ -27,6 +25,8 @@ mod join;
 mod kept;
 mod schur;
 mod solution;
+#[cfg(test)]
+pub(crate) mod test_altered;
 mod tuning;
 mod window_factor;
 
@@ -65,6 +65,8 @@ pub struct Left {
 /// The path owns the order of contact and passes it along; an updater keeps whatever it needs to answer
 /// quickly. [`ContactSequence::revision`] says whether a cache still belongs to it. An updater starts with
 /// no node in contact.
+///
+/// A path holds its updater as a `dyn LinearUpdater`, and may be sent to another thread with it: so it borrows nothing.
 ///
 /// Here is one that keeps nothing and factors the whole matrix whenever it is asked:
 ///

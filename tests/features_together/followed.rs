@@ -1,7 +1,7 @@
 //! What follows from a path: patches, leaks, slip, creep, conductances and tables.
 
 use asperity::bed::Bed;
-use asperity::creep::{Corners, Creep, Prony, Relaxation};
+use asperity::creep::{Creep, PiecewiseLinear, Prony, Relaxation};
 use asperity::joint::{Conduction, InterfaceRow, InterfaceTable};
 use asperity::kernel::Theory;
 use asperity::leak::Seal;
@@ -317,7 +317,7 @@ pub(super) fn creep(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let prony = Prony::shares(&[(TIME, SHARE)])?;
     // Behind full contact too.
     let load = if bed.is_full() { 0.5 } else { 0.35 } * bed.last_load();
-    let held = Creep::new(&bed, &prony, &Corners::step(load)?)?;
+    let held = Creep::new(&bed, &prony, &PiecewiseLinear::step(load)?)?;
     let dense = Dense::of(pressed.row);
     let length = bed.approaches().last().copied().unwrap_or(0.0);
     let allowed = pressed.row.tolerance() * length;
@@ -362,7 +362,7 @@ fn relaxation(
     let name = row.name;
     let load = 0.6 * bed.last_load();
     let there = bed.path_state(load)?;
-    let held = Relaxation::new(bed, prony, &Corners::step(there.contact.approach)?)?;
+    let held = Relaxation::new(bed, prony, &PiecewiseLinear::step(there.contact.approach)?)?;
     let elastic = path.fields_at(&there)?.pressure;
     let tolerance = row.tolerance();
     Dense::of(row).scalars(elastic.as_slice(), there.contact.approach, tolerance, name);

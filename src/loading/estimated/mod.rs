@@ -10,9 +10,9 @@ mod plateau;
 pub(super) mod resumed;
 mod states;
 #[cfg(test)]
-mod window_tests;
+mod test_wrong_matrices;
 #[cfg(test)]
-mod wrong_matrices;
+mod window_tests;
 
 use super::contradiction::{Slack, contradiction};
 use super::gap_field::GapLine;

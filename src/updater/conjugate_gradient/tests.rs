@@ -1,6 +1,6 @@
 use super::*;
 use crate::surface::{Amplitude, SelfAffine};
-use crate::updater::altered::Altered;
+use crate::updater::test_altered::Altered;
 use crate::updater::{Dense, Left, check};
 use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral};
 

@@ -6,7 +6,7 @@ use crate::loading::phase::Phase;
 use crate::loading::{LoadingEnd, LoadingState};
 use crate::surface::{Amplitude, HeightMap, SelfAffine};
 use crate::updater::RecursiveCholesky;
-use crate::updater::altered::{Altered, Proposal};
+use crate::updater::test_altered::{Altered, Proposal};
 use crate::{
     Boussinesq, ContactEvent, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
     Spectral,

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::complementary::{complementary, from_first_touch};
+use super::test_complementary::{complementary, from_first_touch};
 use crate::contact::ContactSequence;
 use crate::kernel::KernelTable;
 use crate::loading::phase::Phase;
