@@ -161,7 +161,7 @@ impl Phase {
     ) -> Result<(), Error> {
         match self {
             Self::Factor { updater, .. } => updater.release(problem, contact, left),
-            // They notice by themselves.
+            // Iterations solve on the contact as it is then.
             Self::Iterations(_) => Ok(()),
         }
     }
