@@ -8,7 +8,6 @@ use super::estimated::Estimated;
 use super::estimated::leaving::Attempt;
 use super::exact::Exact;
 use super::factor_log::FactorLog;
-use super::history::History;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::Phase;
 use super::rule::ContactRule;
@@ -82,15 +81,6 @@ impl LoadingPath {
         self.limits = limits;
         self.end = None;
         Ok(())
-    }
-
-    /// All states to come, up to the end of the path.
-    ///
-    /// # Errors
-    ///
-    /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate to keep them.
-    pub fn run(&mut self) -> Result<History, Error> {
-        self.by_ref().collect()
     }
 
     /// The next state, `None` at the end of the path.

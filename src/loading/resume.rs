@@ -10,6 +10,15 @@ use crate::updater::Left;
 use crate::{Error, Grid};
 
 impl LoadingPath {
+    /// All states to come, up to the end of the path.
+    ///
+    /// # Errors
+    ///
+    /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate to keep them.
+    pub fn run(&mut self) -> Result<History, Error> {
+        self.by_ref().collect()
+    }
+
     /// Goes on behind states that this path yielded before.
     pub(super) fn go_on(&mut self, history: &History) -> Result<(), Error> {
         self.restore(history)?;
