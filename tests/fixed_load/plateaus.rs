@@ -135,7 +135,7 @@ fn approaches_at_the_far_end_have_its_load() {
                 });
                 // The tolerance of the approach, by the stiffness of the node that touches.
                 let allowed = 1e-8 * far.approach * far.interfacial_stiffness.unwrap();
-                let error = (found.state.load - near.load).abs();
+                let error = (found.contact.load - near.load).abs();
                 assert!(error < allowed, "{} nodes, {part:e}: {error:e}", near.contact_nodes);
             }
         }
