@@ -49,6 +49,9 @@ fn a_linear_contact_loses_what_its_compliance_says() {
     }
 }
 
+/// Straight pieces of load and approach between two loads of a history.
+const PIECES: usize = 16;
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
 
@@ -97,16 +100,19 @@ proptest! {
         let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
         let (mut work, mut put_in, mut before) = (0.0, 0.0, contact.state());
         for load in loads.into_iter().chain([0.0]) {
-            for part in [0.5, 1.0] {
-                let load = before.load + part * (load * bed.last_load() - before.load);
-                let state = contact.step(10_f64.powf(duration), Control::Load(load)).unwrap();
+            let (from, to) = (before.load, load * bed.last_load());
+            for k in 1..=PIECES {
+                let load = from + (to - from) * k as f64 / PIECES as f64;
+                let duration = 10_f64.powf(duration) / PIECES as f64;
+                let state = contact.step(duration, Control::Load(load)).unwrap();
                 let done = 0.5 * (state.load + before.load) * (state.approach - before.approach);
                 work += done;
                 put_in += done.abs();
                 before = state;
             }
         }
-        prop_assert!(work >= -1e-12 * put_in, "{} of {}", work, put_in);
+        // By chords, an elastic contact of such histories gives up to 0.3 % of its work, and 6 % by those of two pieces.
+        prop_assert!(work >= -5e-3 * put_in, "{} of {}", work, put_in);
     }
 }
 
