@@ -212,6 +212,8 @@ fn a_dry_run_estimates_and_writes_nothing() -> Done {
     let folder = Scratch::new("ensemble-dry")?;
     let surface = common::data("selfaffine_128.npy");
     let surface = format!("--surface {} --side 1e-2 --material steel", surface.display());
+    // Nodes leave it again.
+    let coat = "--layer steel,6e-4 --base 3e9,0.3";
     assert!(output(&folder.0, "path --nodes 32 --record r.npz")?.status.success());
     // Files as they are, and their number.
     let written = || -> std::io::Result<(Vec<Vec<u8>>, usize)> {
@@ -239,6 +241,13 @@ fn a_dry_run_estimates_and_writes_nothing() -> Done {
         (&format!("{surface} --mean-pressure 2e9"), 1533, 0.09, 50.0),
         (&format!("{surface} --max-approach 1e-4"), 539, 0.05, 39.0),
         ("--resume r.npz --max-area-fraction 1", 1024, 0.06, 34.0),
+        (
+            &format!("--nodes 128 {coat} --max-area-fraction 0.1 --updater cholesky"),
+            1638,
+            3.4,
+            47.0,
+        ),
+        (&format!("--nodes 256 {coat} --max-area-fraction 0.03"), 1966, 8.5, 84.0),
     ] {
         let done = output(&folder.0, &format!("path {line} --dry-run --json --out out"))?;
         assert!(done.status.success(), "{line}: {}", said(&done));

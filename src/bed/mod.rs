@@ -343,9 +343,10 @@ fn stiffness(state: &LoadingState) -> Result<f64, Error> {
 fn check_event(state: &LoadingState) -> Result<(), Error> {
     let (happens, instead) = match state.event {
         ContactEvent::Touch | ContactEvent::Limit => return Ok(()),
-        ContactEvent::Release => {
-            ("leaves the contact", "A path that ends before this event has them")
-        }
+        ContactEvent::Release => (
+            "leaves the contact",
+            "A path that ends before this event has them; on layers of several materials neither slip nor creep follows from them",
+        ),
         ContactEvent::Yield => (
             "yields",
             "Unload, and follow the elastic path of the residual surface: up to the load before unloading it is that of this contact",

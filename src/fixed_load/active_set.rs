@@ -3,7 +3,7 @@
 use super::descent::Descent;
 use super::iterate::{Criteria, Errors, Iterate, Progress};
 use super::level::{Level, Prescribed};
-use super::tuning::{DEAD_BAND, INNER, INNER_DOWNHILL, PATIENCE, STRICTER, STRICTEST, UNCONFIRMED};
+use super::tuning::{INNER, INNER_DOWNHILL, PATIENCE, STRICTER, STRICTEST, UNCONFIRMED};
 use crate::Error;
 use crate::krylov::{dot, greatest, sum, sum_over};
 
@@ -141,8 +141,7 @@ impl<'a> ActiveSet<'a> {
 
     /// One contact set: conjugate gradients on it, then release of nodes with tension.
     fn round(&mut self, criteria: Criteria) -> Result<Errors, Error> {
-        let approach = self.level.iterate.approach;
-        let deepest = approach - DEAD_BAND * criteria.tolerance * criteria.scale(approach);
+        let deepest = criteria.deepest(self.level.iterate.approach);
         if self.stalled >= PATIENCE {
             return self.cautious_round(criteria, deepest);
         }

@@ -1,6 +1,6 @@
 //! Approximate solutions: what they are, how good they are, and when they are good enough.
 
-use super::tuning::FINEST;
+use super::tuning::{DEAD_BAND, FINEST};
 use crate::krylov::{NodeSet, greatest};
 
 /// An approximate solution on one grid: pressure ≥ 0, with the target's sum if it is one.
@@ -29,6 +29,11 @@ impl Criteria {
     /// Greatest length by which gaps may be wrong at an approach.
     pub(super) fn gap_error(&self, approach: f64) -> f64 {
         self.tolerance * self.scale(approach)
+    }
+
+    /// The total gap below which nodes overlap at an approach; what is less is rounding.
+    pub(super) fn deepest(&self, approach: f64) -> f64 {
+        approach - DEAD_BAND * self.gap_error(approach)
     }
 
     /// The unit of length of the tolerance.

@@ -288,9 +288,9 @@ impl<'a> Stepper<'a> {
             };
             is_solved = true;
             if let Prescribed::Approach(approach) = rest
-                && finest.gap.iter().all(|gap| *gap >= approach)
+                && finest.gap.iter().all(|gap| *gap >= criteria.deepest(approach))
             {
-                // All that is in contact has yielded.
+                // All that is in contact has yielded, or touches and carries nothing.
                 finest.iterate.pressure.fill(0.0);
                 finest.iterate.total_gap.copy_from_slice(&finest.gap);
                 finest.iterate.approach = approach;

@@ -343,6 +343,7 @@ impl<'a> Settings<'a> {
             phase,
             procedure,
             handed_over_at,
+            rebuilt_at: None,
             rule: self.rule,
             limits,
             state: None,

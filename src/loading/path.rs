@@ -31,6 +31,8 @@ pub struct LoadingPath {
     pub(super) procedure: Procedure,
     /// Elastic nodes in contact when the factor was given up.
     pub(super) handed_over_at: Option<usize>,
+    /// The event behind which the path was made again from states alone: no window has begun there yet.
+    pub(super) rebuilt_at: Option<usize>,
     pub(super) rule: ContactRule,
     pub(super) limits: Limits,
     /// The state yielded last.

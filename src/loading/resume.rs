@@ -71,7 +71,9 @@ impl LoadingPath {
         phase.renew_field(run, run.scalars.approach())?;
         run.scalars.renew_load(&run.problem, &run.contact, &run.field);
         let snapshot = Snapshot::of(run, phase, &last)?;
-        snapshot.recognise(run, phase, &last)
+        snapshot.recognise(run, phase, &last)?;
+        self.rebuilt_at = Some(last.step);
+        Ok(())
     }
 }
 

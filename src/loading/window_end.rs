@@ -52,12 +52,13 @@ pub(crate) struct FactorEnd {
 }
 
 impl LoadingPath {
-    /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, and behind an
-    /// error.
+    /// The end of the last window behind the state that was yielded last; `None` before the first one, behind states alone, in full
+    /// contact, and behind an error.
     pub(crate) fn window_end(&self) -> Option<WindowEnd> {
         use LoadingEnd::{Failed, FullContact, Memory};
         let is_over = matches!(self.end, Some(FullContact | Failed | Memory));
-        if self.state.is_none() || self.failure.is_some() || is_over {
+        let step = self.state?.step;
+        if self.rebuilt_at == Some(step) || self.failure.is_some() || is_over {
             return None;
         }
         let (log, solution) = match &self.procedure {

@@ -16,7 +16,7 @@ use crate::{Error, Grid};
 
 /// What rounding may change, relative to the greatest numbers of a path: sums over up to 10⁶ events, each to 10⁻¹⁶ of them, and the
 /// 10⁻¹⁰ to which a path that goes on from a record is the one that was not interrupted.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 /// Products and sums of the numbers of nodes and cells.
 const FEW_ROUNDINGS: f64 = 1e-14;
 /// The greatest part of the approach that a state may be off by and still say something.

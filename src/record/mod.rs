@@ -30,6 +30,7 @@
 //! # }
 //! ```
 
+mod front;
 mod increments;
 mod kernel;
 #[cfg(feature = "io")]
@@ -176,11 +177,19 @@ impl LoadingRecord {
             }
         }
         let layering = kernel.origin.layering();
-        let ahead = history.window_end().map_or(&[][..], |end| &end.ahead);
+        let end_of_window = history.window_end();
+        let ahead = end_of_window.map_or(&[][..], |end| &end.ahead);
+        if !ahead.is_empty() {
+            let events: History = history.events().iter().chain(ahead).copied().collect();
+            replay(&grid, &events, |_, _, _| {})?;
+        }
         let states: Vec<LoadingState> = history.states().iter().chain(ahead).copied().collect();
         let hardness =
             settings.hardness.as_ref().map(|hardness| hardness.map(&grid)).transpose()?;
         increments::check(&grid, &heights, (&kernel.origin, hardness.as_ref()), &states)?;
+        if let Some(end_of_window) = end_of_window {
+            front::check(&grid, &states, &end_of_window.next)?;
+        }
         let history = history.on(layering);
         Ok(Self { grid, heights, kernel, settings, history, end, bodies: Vec::new() })
     }

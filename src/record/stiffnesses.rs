@@ -11,8 +11,8 @@ use crate::{Error, Grid};
 /// Without a factor stiffnesses are estimates, from one window to the next to 10⁻⁴ or better.
 pub(super) const SAME_STIFFNESS: f64 = 1e-3;
 
-const CONTACT: &str = "contact stiffness";
-const INTERFACIAL: &str = "interfacial stiffness";
+pub(super) const CONTACT: &str = "contact stiffness";
+pub(super) const INTERFACIAL: &str = "interfacial stiffness";
 
 /// What is known of the stiffnesses of a path.
 pub(super) struct Stiffnesses {
@@ -244,8 +244,9 @@ mod tests {
         LoadingRecord::from_parts(grid, record.heights.clone(), kernel, settings, history, end)
     }
 
-    /// Paths that end, with nothing behind the last state, on square and long cells, also where most nodes have yielded, and in full contact: each is a
-    /// record, and none if a stiffness of the last state is changed by much. A double one is seen with few open nodes or a sure other stiffness.
+    /// Paths that end, with nothing behind the last state and no window, on square and long cells, also where most nodes have yielded, and in
+    /// full contact: each is a record, and none if a stiffness of the last state is changed by much. A double one is seen with few open nodes
+    /// or a sure other stiffness.
     #[test]
     fn stiffnesses_of_the_last_state_are_bounded() -> Result<(), Error> {
         for grid in [Grid::new(20, 18, 1.0, 1.0)?, Grid::new(24, 10, 1.0, 7.0)?] {

@@ -84,6 +84,8 @@ const EXCESS_OF_ONE: f64 = 0.08;
 /// Pressure over composite modulus: metals yield at a hardness of some 0.01 to 0.03, and polymers at 0.047 (PTFE) to 0.072 (PMMA).
 const METALS: f64 = 0.02;
 const POLYMERS: f64 = 0.05;
+/// Rounding of a pressure, relative to the hardness.
+const SAME_HARDNESS: f64 = 1e-6;
 /// Metals, glass and ceramics are stiffer than this, polymers are softer, and rubber, which does not yield, is softer than the
 /// second \[Pa\].
 const SOFTEST_METAL: f64 = 1e10;
@@ -194,7 +196,8 @@ impl Warning {
     #[must_use]
     pub fn of_pressure(pressure: f64, e_star: f64, hardness: Option<f64>) -> Option<Self> {
         let borne = match hardness {
-            Some(hardness) => hardness,
+            // What a path with this hardness leaves of a surface bears it again, to rounding.
+            Some(hardness) => hardness * (1.0 + SAME_HARDNESS),
             None if e_star >= SOFTEST_METAL => METALS * e_star,
             None if e_star >= SOFTEST_POLYMER => POLYMERS * e_star,
             None => f64::INFINITY,

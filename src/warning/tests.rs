@@ -159,6 +159,7 @@ fn pressures_that_solids_do_not_bear_are_noticed() {
         (3e6, 2.67e6, None, None),
         // What is known counts.
         (5e9, 73e9, Some(5.5e9), None),
+        (5.5e9 * (1.0 + 1e-9), 73e9, Some(5.5e9), None),
         (11e9, 73e9, Some(5.5e9), Some("2.0 times the typical hardness of the material, 5.5 GPa")),
     ] {
         let found = told(pressure, e_star, hardness);

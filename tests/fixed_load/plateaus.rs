@@ -118,6 +118,30 @@ fn rough_surfaces_have_the_states_of_their_paths() {
     }
 }
 
+/// Where the next node touches a plateau ends. There, and by rounding behind it, this node carries nothing yet.
+#[test]
+fn approaches_at_the_far_end_have_its_load() {
+    let surface = small();
+    let grid = Grid::square(16, 1e-3).unwrap();
+    for kernel in kernels(grid) {
+        let history = path(&surface, &*kernel, 8e6);
+        let builder = FixedLoadSolver::builder(&surface, &*kernel).hardness(8e6);
+        let mut solver = builder.build().unwrap();
+        for [near, far] in plateaus(&history) {
+            for part in [0.0, 1e-15, 1e-13, 1e-11] {
+                let target = ContactTarget::Approach(far.approach * (1.0 + part));
+                let found = solver.solve_target(target).unwrap_or_else(|error| {
+                    panic!("{} nodes, {part:e} behind: {error}", near.contact_nodes)
+                });
+                // The tolerance of the approach, by the stiffness of the node that touches.
+                let allowed = 1e-8 * far.approach * far.interfacial_stiffness.unwrap();
+                let error = (found.contact.load - near.load).abs();
+                assert!(error < allowed, "{} nodes, {part:e}: {error:e}", near.contact_nodes);
+            }
+        }
+    }
+}
+
 /// Loads a little below a plateau and a little above lie on either side of it; in a sweep up through it as well.
 #[test]
 fn sweeps_pass_plateaus() {

@@ -52,6 +52,26 @@ fn resumed_paths_are_uninterrupted_ones() {
     }
 }
 
+/// A path that was made again from states alone has begun no window. Its record goes on from the states too.
+#[test]
+fn paths_made_again_are_recorded_before_they_go_on() {
+    for (name, kernel) in kernels(grid()) {
+        let (path, all) = whole(&*kernel, RecursiveCholesky::new());
+        let record = cut(&path, &all, 60);
+        let surface = record.heights().clone();
+        let builder =
+            || LoadingSolver::builder(&surface, &*kernel).updater(RecursiveCholesky::new());
+        let again = builder().resume(record.history()).unwrap();
+        let again = LoadingRecord::new(&again, record.history().clone()).unwrap();
+        let rest = builder().resume(again.history()).unwrap();
+        let rest: Vec<LoadingState> = rest.map(Result::unwrap).collect();
+        assert_eq!(rest.len(), all.len() - 60, "{name}");
+        for (found, expected) in rest.iter().zip(&all[60..]) {
+            assert_close(found, expected, 1e-10, all[0].contact.mean_gap);
+        }
+    }
+}
+
 /// Without a factor the nodes are the same.
 #[test]
 fn paths_without_a_factor_go_on_at_the_same_nodes() {
