@@ -91,6 +91,7 @@
 #![warn(missing_debug_implementations)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+pub mod adhesion;
 pub mod bed;
 mod cell_response;
 pub mod contact;
@@ -130,7 +131,8 @@ pub use asperity_surfaces::{
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::{
-    BedError, CreepError, Error, JointError, KernelError, SlipError, StressError, UpdaterError,
+    AdhesionError, BedError, CreepError, Error, JointError, KernelError, SlipError, StressError,
+    UpdaterError,
 };
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{

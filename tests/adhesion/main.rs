@@ -1,0 +1,4 @@
+//! Adhesion: against other solvers, by all equilibria of small grids, and by what holds of every path.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+mod reference_branches;
