@@ -1,5 +1,9 @@
 //! The watched nodes of a window: what each does until something happens, and what an event changes.
 
+use faer::linalg::matmul::matmul;
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Accum, Mat, MatMut, Par, Side, unzip, zip};
+
 use super::law::CohesiveLaw;
 use super::state::NodeState;
 use crate::updater::Schur;
@@ -105,11 +109,7 @@ impl Board {
             is_worn: false,
             changes: Vec::new(),
         };
-        for place in 0..size {
-            if board.rows[place].state == NodeState::Soft {
-                board.soften(place);
-            }
-        }
+        board.soften_first();
         // Behind these pivots, which have their part in the rates already.
         let rates = begin.rates.iter().copied().chain(begin.sums.iter().map(|[_, rate]| *rate));
         board.matrix[height * size..].iter_mut().zip(rates).for_each(|(to, rate)| *to = rate);
@@ -148,6 +148,35 @@ impl Board {
         own[place] = inverse;
         self.matrix[height * place..height * (place + 1)].copy_from_slice(&own);
         debug_assert!(place < size);
+    }
+
+    /// Puts all soft nodes, which come first, on the slope of the law, as one pivot: with A = T_ss − 1/k
+    ///
+    /// ```text
+    /// T_ss ← A⁻¹,   T_sr ← −A⁻¹ T_sr,   T_rs ← T_rs A⁻¹,   T_rr ← T_rr − T_rs A⁻¹ T_sr
+    /// ```
+    fn soften_first(&mut self) {
+        let (size, height) = (self.size(), self.size() + 2);
+        let soft = self.rows.iter().take_while(|row| row.state == NodeState::Soft).count();
+        for place in 0..soft {
+            self.shift(place, -self.compliance());
+        }
+        let minus = Mat::from_fn(soft, soft, |i, j| -self.matrix[i + height * j]);
+        let Ok(factor) = minus.llt(Side::Lower) else {
+            // Not stable, which the solution of this state has excluded: one by one, whatever comes of it.
+            return (0..soft).for_each(|place| self.pivot(place));
+        };
+        let inverse = factor.inverse();
+        let all =
+            MatMut::from_column_major_slice_mut(&mut self.matrix[..height * size], height, size);
+        let (own, beside, below, rest) = all.split_at_mut(soft, soft);
+        let (mut own, mut beside, mut below, rest) = (own, beside, below, rest);
+        let answered = &inverse * beside.as_ref();
+        matmul(rest, Accum::Add, below.as_ref(), answered.as_ref(), 1.0, Par::Seq);
+        beside.copy_from(&answered);
+        let taken = below.as_ref() * &inverse;
+        zip!(&mut below, &taken).for_each(|unzip!(to, value)| *to = -value);
+        zip!(&mut own, &inverse).for_each(|unzip!(to, value)| *to = -value);
     }
 
     /// Puts a node whose pressure is given on the slope of the law.
@@ -393,13 +422,8 @@ impl Board {
         }
     }
 
-    /// The greatest pull, and the gap up to which it acts.
-    pub(super) fn stress(&self) -> f64 {
-        self.law.stress()
-    }
-
-    pub(super) fn flat_range(&self) -> f64 {
-        self.law.flat_range()
+    pub(super) fn law(&self) -> &CohesiveLaw {
+        &self.law
     }
 
     /// Whether the parameter is the pull of a row still.

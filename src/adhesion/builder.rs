@@ -5,8 +5,9 @@ use std::sync::Arc;
 use super::front::Body;
 use super::law::Adhesion;
 use super::path::AdhesivePath;
+use super::state::Direction;
 use super::target::Targets;
-use crate::contact::ContactTarget;
+use crate::contact::{ContactState, ContactTarget};
 use crate::convolution::Convolution;
 use crate::error::AdhesionError;
 use crate::memory;
@@ -75,7 +76,7 @@ impl AdhesiveBuilder<'_> {
     /// # Errors
     ///
     /// Those of [`Problem::new`] and of [`Adhesion::on`]; [`AdhesionError::GrowthUnknown`] for a kernel of
-    /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] for targets that make no sense; [`Error::MemoryBudget`] if not even the grid
+    /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] and [`AdhesionError::Behind`] for targets that make no sense; [`Error::MemoryBudget`] if not even the grid
     /// fits.
     pub fn build(self) -> Result<AdhesivePath, Error> {
         if self.window_size == 0 {
@@ -95,6 +96,9 @@ impl AdhesiveBuilder<'_> {
         }
         let law = self.law.of(problem.table())?;
         let targets = Targets::of(&self.targets, &problem.grid())?;
+        let (range, mean_gap) = (law.range(), problem.mean_gap());
+        let apart = ContactState::new(&problem.grid(), 0, -range, 0.0, mean_gap + range);
+        targets.check_ahead(&apart, Direction::Loading)?;
         Ok(AdhesivePath::new(Body::new(Arc::new(problem), law, left), targets, self.window_size))
     }
 }

@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use faer::prelude::Solve;
+use faer::{Mat, Side};
+
 use super::law::CohesiveLaw;
 use super::state::NodeState;
 use crate::contact::ContactSequence;
@@ -256,22 +259,17 @@ impl Body {
         self.updater.watch(&self.problem, &self.contact, &self.soft, &mut schur)?;
         // M, of which the factor takes the lower triangle.
         let compliance = self.law.slope().recip();
-        let mut matrix = schur.matrix().clone_owned();
-        matrix.neg_mut();
-        for j in 0..schur.size() {
-            matrix[(j, j)] += compliance;
-        }
-        let factor = nalgebra::Cholesky::new(matrix);
-        let factor = factor
-            .ok_or(Error::FactorizationFailed { nodes: self.contact.len() + self.soft.len() })?;
-        let [value, rate] = gaps;
-        let mut right = nalgebra::DMatrix::zeros(value.len(), 2);
-        for (k, (value, rate)) in value.into_iter().zip(rate).enumerate() {
-            right[(k, 0)] = value - self.law.range();
-            right[(k, 1)] = rate;
-        }
-        factor.solve_mut(&mut right);
-        Ok([0, 1].map(|k| right.column(k).iter().copied().collect()))
+        let minus = Mat::from_fn(schur.size(), schur.size(), |i, j| {
+            if i == j { compliance - schur.entry(i, j) } else { -schur.entry(i, j) }
+        });
+        let nodes = self.contact.len() + self.soft.len();
+        let factor = minus.llt(Side::Lower);
+        let factor = factor.map_err(|_| Error::FactorizationFailed { nodes })?;
+        let range = self.law.range();
+        let mut right =
+            Mat::from_fn(schur.size(), 2, |i, k| gaps[k][i] - if k == 0 { range } else { 0.0 });
+        factor.solve_in_place(&mut right);
+        Ok([0, 1].map(|k| right.col(k).iter().copied().collect()))
     }
 
     /// What a unit of pressure at each node out of contact, or of gap at each in contact, makes of the sums of pressures and of gaps, the

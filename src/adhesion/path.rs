@@ -249,8 +249,14 @@ impl AdhesivePath {
 
     fn push(&mut self, event: AdhesiveEvent, node: usize, moment: &Moment, changes: usize) {
         let area = self.grid().cell_area();
+        let is_apart = moment.contact_nodes == 0 && moment.pulled == [0, 0];
         let has_distant_point = self.body.problem.table().gauge().is_none();
         let [[pressures, pressure_rate], [gaps, gap_rate]] = moment.sums;
+        // By identity and not by arithmetic.
+        let [pressures, pressure_rate] =
+            if is_apart { [0.0; 2] } else { [pressures, pressure_rate] };
+        let is_full = moment.contact_nodes == self.grid().nodes();
+        let [gaps, gap_rate] = if is_full { [0.0; 2] } else { [gaps, gap_rate] };
         let (nodes, load) = (self.grid().nodes() as f64, area * pressures);
         let gauge = self.gauge();
         let adhesive_energy = area * moment.energy;
@@ -262,7 +268,7 @@ impl AdhesivePath {
         let interfacial = -area * pressure_rate / (gap_rate / nodes);
         let contact = ContactState {
             contact_stiffness: Some(stiffness).filter(|_| has_distant_point),
-            interfacial_stiffness: Some(interfacial).filter(|stiffness| stiffness.is_finite()),
+            interfacial_stiffness: Some(if is_full { f64::INFINITY } else { interfacial }),
             energy: gauge.0.reported_energy(elastic, load),
             ..ContactState::new(&self.grid(), moment.contact_nodes, approach, load, gaps / nodes)
         };
@@ -294,6 +300,13 @@ impl AdhesivePath {
             self.window()?;
         }
         self.last = self.queue.pop_front();
+        let is_jumped = |state: &AdhesiveState| {
+            matches!(state.event, AdhesiveEvent::JumpEnd | AdhesiveEvent::Part)
+                && self.targets.is_past(&state.contact, self.direction)
+        };
+        if self.queue.is_empty() && self.last.as_ref().is_some_and(is_jumped) {
+            self.end = Some(BranchEnd::Target);
+        }
         Ok(self.last)
     }
 
@@ -308,12 +321,8 @@ impl AdhesivePath {
             && let Some(node) = self.jump.take()
         {
             let moment = Moment::of(&self.body.law, &self.front, &field, self.totals);
-            let contact_nodes = moment.contact_nodes;
             self.push(AdhesiveEvent::JumpEnd, node, &moment, self.log.len());
             self.field = Some(field);
-            if self.targets.is_past(contact_nodes, self.direction) {
-                self.end = Some(BranchEnd::Target);
-            }
             return Ok(());
         }
         let view = window::View {

@@ -21,7 +21,12 @@ pub(super) struct Measured {
     pub(super) approach: f64,
     pub(super) load: [f64; 2],
     pub(super) mean_gap: [f64; 2],
+    /// A stiffness that rates of loads are rounding to \[N/m\].
+    pub(super) stiffness: f64,
 }
+
+/// Rates below this part of those of a free surface are rounding: in full contact mean planes of a periodic half-space do not approach.
+const LEAST_RATE: f64 = 1e-11;
 
 impl Targets {
     /// # Errors
@@ -63,7 +68,8 @@ impl Targets {
                     ("contact area fraction", fraction, state.contact_area_fraction, sign)
                 }
             };
-            if way * (value - present) < 0.0 {
+            let is_apart = state.load == 0.0 && direction == Direction::Loading;
+            if way * (value - present) < 0.0 && !(quantity == "load" && is_apart) {
                 return Err(AdhesionError::Behind { quantity, value, present }.into());
             }
         }
@@ -73,18 +79,29 @@ impl Targets {
     /// When the first is reached that is not an area; infinity if none is as long as nothing happens.
     pub(super) fn time(&self, gauge: Gauge, measured: &Measured, direction: Direction) -> f64 {
         let sign = direction.sign();
-        let Measured { approach, load: [load, load_rate], mean_gap: [gap, gap_rate] } = *measured;
+        let Measured { approach, load: [load, load_rate], mean_gap: [gap, gap_rate], stiffness } =
+            *measured;
         let times = self.targets.iter().map(|target| {
-            let (left, rate) = match *target {
-                ContactTarget::Load(to) => (sign * (to - load), sign * load_rate),
+            let (left, rate, unit) = match *target {
+                // Whether it rises or falls.
+                ContactTarget::Load(to) => {
+                    ((to - load).abs(), (to - load).signum() * load_rate, stiffness)
+                }
                 ContactTarget::Approach(to) => (
                     sign * (to - gauge.reported_approach(approach, load)),
                     1.0 - sign * gauge.displacement(load_rate),
+                    1.0,
                 ),
-                ContactTarget::MeanGap(to) => (sign * (gap - to), -sign * gap_rate),
+                ContactTarget::MeanGap(to) => (sign * (gap - to), -sign * gap_rate, 1.0),
                 ContactTarget::AreaFraction(_) => return f64::INFINITY,
             };
-            if left >= 0.0 && rate > 0.0 { left / rate } else { f64::INFINITY }
+            if left == 0.0 {
+                0.0
+            } else if left > 0.0 && rate > LEAST_RATE * unit {
+                left / rate
+            } else {
+                f64::INFINITY
+            }
         });
         times.fold(f64::INFINITY, f64::min)
     }
@@ -94,12 +111,24 @@ impl Targets {
         direction == Direction::Loading && self.nodes.is_some_and(|nodes| contact_nodes >= nodes)
     }
 
-    /// Whether a jump has gone past the area that was asked for, or unloading has come down to it.
-    pub(super) fn is_past(&self, contact_nodes: usize, direction: Direction) -> bool {
-        self.nodes.is_some_and(|nodes| match direction {
-            Direction::Loading => contact_nodes > nodes,
-            Direction::Unloading => contact_nodes <= nodes,
-        })
+    /// Whether unloading has come down to an area.
+    pub(super) fn is_reached(&self, contact_nodes: usize, direction: Direction) -> bool {
+        direction == Direction::Unloading && self.nodes.is_some_and(|nodes| contact_nodes <= nodes)
+    }
+
+    /// Whether a state is beyond a target: behind a jump, in which all but the load goes the way of the branch, or once unloading has come
+    /// down to an area.
+    pub(super) fn is_past(&self, state: &ContactState, direction: Direction) -> bool {
+        let is_beyond = |target: &ContactTarget| match *target {
+            ContactTarget::Load(_) => false,
+            ContactTarget::Approach(to) => direction.sign() * (state.approach - to) > 0.0,
+            ContactTarget::MeanGap(gap) => direction.sign() * (gap - state.mean_gap) > 0.0,
+            ContactTarget::AreaFraction(_) => {
+                direction == Direction::Loading
+                    && self.nodes.is_some_and(|nodes| state.contact_nodes > nodes)
+            }
+        };
+        self.is_reached(state.contact_nodes, direction) || self.targets.iter().any(is_beyond)
     }
 
     /// Gives a state at a target the very value that was asked for.

@@ -303,6 +303,7 @@ impl<'a> Play<'a> {
             approach: self.approach,
             load: [pressures, pressure_rate].map(|sum| self.area * sum),
             mean_gap: [gaps, gap_rate].map(|sum| sum / self.nodes),
+            stiffness: self.area * self.board.law().slope(),
         };
         let limit = self.view.targets.time(self.view.gauge, &measured, self.view.direction);
         let first = until.min(limit);
@@ -315,7 +316,7 @@ impl<'a> Play<'a> {
         let is_full = |place: usize| {
             let state = self.board.rows[place].state;
             let touches = state == NodeState::Cohesive
-                || state == NodeState::Soft && self.board.flat_range() == 0.0;
+                || state == NodeState::Soft && self.board.law().flat_range() == 0.0;
             touches
                 && self.board.closes(place)
                 && self.view.targets.is_full(self.board.contact_nodes, self.view.direction)
@@ -347,13 +348,9 @@ impl<'a> Play<'a> {
             _ => AdhesiveEvent::Soften,
         };
         self.push(event, node, self.moment(), self.board.changes.len());
-        if event == AdhesiveEvent::Part
-            && self.view.targets.is_past(self.board.contact_nodes, self.view.direction)
-        {
-            self.is_at_limit = true;
-            return false;
-        }
-        !self.board.is_worn
+        let is_few = event == AdhesiveEvent::Part
+            && self.view.targets.is_reached(self.board.contact_nodes, self.view.direction);
+        !is_few && !self.board.is_worn
     }
 
     /// One event along the pull of a node; false once the window ends.
@@ -380,7 +377,7 @@ impl<'a> Play<'a> {
                 self.events += 1;
             }
             _ if carry.end <= step
-                && carry.law > step * (1.0 + 1e-9) + 1e-12 * self.board.stress()
+                && carry.law > step * (1.0 + 1e-9) + 1e-12 * self.board.law().stress()
                 && carry.corner > step =>
             {
                 self.board.let_go();

@@ -51,12 +51,6 @@ pub enum AdhesionError {
     )]
     GrowthUnknown,
 
-    /// Adhesion and a hardness.
-    #[error(
-        "adhesion and a hardness are not derived together: what yields on loading changes the gaps that pull on unloading. Leave one of them out"
-    )]
-    WithHardness,
-
     /// A branch that was not asked for from a state on it.
     #[error(
         "the {quantity} at which the branch is to end is {value}, and the path is at {present} already"

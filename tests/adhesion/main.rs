@@ -1,4 +1,8 @@
 //! Adhesion: against other solvers, by all equilibria of small grids, and by what holds of every path.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+mod closed_forms;
+mod equilibria;
 mod reference_branches;
+mod targets;
+mod walks;
