@@ -38,6 +38,7 @@
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
 //! | save a path and continue it | [`record`] |
 //! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
+//! | surfaces that stick: pull-off force, both branches | [`adhesion`] |
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
 //! | viscoelastic bodies: creep, relaxation, cycles | [`creep`] |
 //! | stress below the surface: where it is greatest, the load of first yield | [`stress`] |
@@ -85,7 +86,7 @@
 //!
 //! # Limits of the model
 //!
-//! Contact is frictionless and without adhesion, and slopes are small. It is elastic, and unloading retraces loading, unless a
+//! Contact is frictionless, without adhesion unless that is asked for ([`adhesion`]), and slopes are small. It is elastic, and unloading retraces loading, unless a
 //! hardness is given ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the greatest pressure with it.
 
 #![warn(missing_debug_implementations)]
@@ -163,6 +164,11 @@ struct FromFileToContact;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/metals_that_yield.md")]
 struct MetalsThatYield;
+
+/// The same of the page on surfaces that stick.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/surfaces_that_stick.md")]
+struct SurfacesThatStick;
 
 /// The same of the page on joints.
 #[cfg(doctest)]

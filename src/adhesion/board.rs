@@ -36,12 +36,13 @@ pub(super) struct Change {
 
 /// Pressures and gaps of watched nodes along a parameter, with the matrix of how each answers to the others.
 ///
-/// Of every node one of two quantities is given and the other answers. Where its gap is 0 the pressure answers; on the slope of the law it
-/// does too, and gap − p/k = h₂ is given; elsewhere the gap answers to a pressure that is given. The matrix has the answers of its rows to
-/// what is given of its columns. A node that changes from one kind to another is a pivot: `T_ij`, `i, j ≠ s`, loses `T_is T_sj / T_ss`. The
-/// pivot of a node that touches is positive, and that of one that becomes soft, T_ss − 1/k, is negative in a stable state: it is
-/// quasi-definite as that of a path with a hardness, but its nodes also go back. Two more rows are sums of all pressures and of all gaps, and
-/// one more column is the rates along the parameter.
+/// Of every node one of two quantities is given and the other answers. Where its gap is 0 the pressure answers; on the
+/// slope of the law it does too, and gap − p/k = h₂ is given; elsewhere the gap answers to a pressure that is given.
+/// The matrix has the answers of its rows to what is given of its columns. A node that changes from one kind to another
+/// is a pivot: `T_ij`, `i, j ≠ s`, loses `T_is T_sj / T_ss`. The pivot of a node that touches is positive, and that of
+/// one that becomes soft, T_ss − 1/k, is negative in a stable state: it is quasi-definite as that of a path with a
+/// hardness, but its nodes also go back. Two more rows are sums of all pressures and of all gaps, and one more column
+/// is the rates along the parameter.
 #[derive(Debug)]
 pub(super) struct Board {
     law: CohesiveLaw,
@@ -87,7 +88,8 @@ impl Board {
         let height = size + 2;
         let mut matrix = vec![0.0; height * (size + 1)];
         for (j, column) in matrix.chunks_exact_mut(height).take(size).enumerate() {
-            // The other quantity is given of those in contact: a gap, of which the matrix of the updater has the negative.
+            // The other quantity is given of those in contact: a gap, of which the matrix of the updater has the
+            // negative.
             let sign = if begin.rows[j].state == NodeState::Contact { -1.0 } else { 1.0 };
             for (i, value) in column[..size].iter_mut().enumerate() {
                 *value = sign * begin.schur.entry(i, j);
@@ -247,7 +249,8 @@ impl Board {
         self.rates(place)[1] < 0.0
     }
 
-    /// Goes on along the parameter. Returns the energy that the traction of held nodes loses against their law, over the area of a cell.
+    /// Goes on along the parameter. Returns the energy that the traction of held nodes loses against their law, over
+    /// the area of a cell.
     pub(super) fn advance(&mut self, step: f64) -> f64 {
         let mut lost = 0.0;
         for place in 0..self.size() {
@@ -348,7 +351,8 @@ impl Board {
         }
     }
 
-    /// Opens a gap. Where others would not be stable then, the traction of those that it would change most is held first.
+    /// Opens a gap. Where others would not be stable then, the traction of those that it would change most is held
+    /// first.
     fn part(&mut self, place: usize) {
         // The pivot is the pressure that a gap there makes, and has to be positive.
         let mut part = self.entry(place, place) * self.compliance();
@@ -374,8 +378,8 @@ impl Board {
         }
     }
 
-    /// How far the pull of the carried row may go before its own law, or an end of that, comes first; `None` once it is back on its law,
-    /// stable, or was none.
+    /// How far the pull of the carried row may go before its own law, or an end of that, comes first; `None` once it is
+    /// back on its law, stable, or was none.
     pub(super) fn carry(&mut self) -> Option<Carry> {
         let place = self.carried?;
         let law = self.law;

@@ -13,8 +13,6 @@ use crate::error::AdhesionError;
 use crate::memory;
 use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface};
 
-/// Nodes that are watched beside those that are pulled.
-const WATCHED: usize = 64;
 /// Fields of the grid that a path holds.
 const FIELDS: usize = 24;
 
@@ -26,7 +24,7 @@ pub struct AdhesiveBuilder<'a> {
     kernel: &'a dyn InfluenceKernel,
     law: Adhesion,
     targets: Vec<ContactTarget>,
-    window_size: usize,
+    window_size: Option<usize>,
     memory_budget: Option<usize>,
 }
 
@@ -42,30 +40,32 @@ impl AdhesivePath {
             kernel,
             law,
             targets: Vec::new(),
-            window_size: WATCHED,
+            window_size: None,
             memory_budget: None,
         }
     }
 }
 
 impl AdhesiveBuilder<'_> {
-    /// Ends the branch of loading at a target, the first time that it is there: at exactly this load, approach or mean gap, which may be
-    /// negative for the first two; or with as many nodes in contact as fit into this fraction of the area, or behind the jump that goes
-    /// past it. Of several targets the first one reached counts. Without any it ends in full contact.
+    /// Ends the branch of loading at a target, the first time that it is there: at exactly this load, approach or mean
+    /// gap, which may be negative for the first two; or with as many nodes in contact as fit into this fraction of the
+    /// area, or behind the jump that goes past it. Of several targets the first one reached counts. Without any it ends
+    /// in full contact.
     pub fn until(mut self, target: ContactTarget) -> Self {
         self.targets.push(target);
         self
     }
 
-    /// How many nodes to watch beside those that are pulled, 64 by default: as many events follow from one solution. States do not depend on
-    /// it, except by rounding. With 1 every event has a solution of its own.
+    /// How many nodes to watch beside those that are pulled: as many events follow from one solution. By default 64, or
+    /// a quarter of the soft nodes. States do not depend on it, except by rounding. With 1 every event has a solution
+    /// of its own.
     pub fn window_size(mut self, nodes: usize) -> Self {
-        self.window_size = nodes;
+        self.window_size = Some(nodes);
         self
     }
 
-    /// Ends the path with an error before it holds more than this many bytes; by default three quarters of the machine's memory, where the
-    /// system tells it.
+    /// Ends the path with an error before it holds more than this many bytes; by default three quarters of the
+    /// machine's memory, where the system tells it.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
         self.memory_budget = Some(bytes);
         self
@@ -76,10 +76,10 @@ impl AdhesiveBuilder<'_> {
     /// # Errors
     ///
     /// Those of [`Problem::new`] and of [`Adhesion::on`]; [`AdhesionError::GrowthUnknown`] for a kernel of
-    /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] and [`AdhesionError::Behind`] for targets that make no sense; [`Error::MemoryBudget`] if not even the grid
-    /// fits.
+    /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] and [`AdhesionError::Behind`] for targets that make no sense;
+    /// [`Error::MemoryBudget`] if not even the grid fits.
     pub fn build(self) -> Result<AdhesivePath, Error> {
-        if self.window_size == 0 {
+        if self.window_size == Some(0) {
             let (quantity, expected) = ("window size", "at least 1");
             return Err(Error::OutOfRange { quantity, value: 0.0, expected });
         }

@@ -66,8 +66,8 @@ impl Field {
 /// C_SI p_I + (C_SS − 1/k) p_S = δ − g_S − u_S + h₂
 /// ```
 ///
-/// where u displaces what is pulled with a fixed traction. The Schur complement of the second row, S_SS − 1/k = −M, is negative definite in
-/// every stable state.
+/// where u displaces what is pulled with a fixed traction. The Schur complement of the second row, S_SS − 1/k = −M, is
+/// negative definite in every stable state.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) problem: Arc<Problem>,
@@ -131,8 +131,8 @@ impl Body {
         Ok(())
     }
 
-    /// Solves on the contact for two right-hand sides over the grid, of which only the values there count: what is left in the contact of
-    /// `C_II x = −b`.
+    /// Solves on the contact for two right-hand sides over the grid, of which only the values there count: what is left
+    /// in the contact of `C_II x = −b`.
     fn solve(&mut self, right: [&[f64]; 2]) -> Result<[Vec<f64>; 2], Error> {
         let order = self.contact.order();
         let mut solved: Vec<[f64; 2]> =
@@ -272,8 +272,8 @@ impl Body {
         Ok([0, 1].map(|k| right.col(k).iter().copied().collect()))
     }
 
-    /// What a unit of pressure at each node out of contact, or of gap at each in contact, makes of the sums of pressures and of gaps, the
-    /// others in contact answering and no node soft.
+    /// What a unit of pressure at each node out of contact, or of gap at each in contact, makes of the sums of
+    /// pressures and of gaps, the others in contact answering and no node soft.
     pub(super) fn sums_by_node(&mut self) -> Result<[Vec<f64>; 2], Error> {
         let nodes = self.problem.initial_gap().len();
         let minus = [vec![-1.0; nodes], self.problem.row_sums().iter().map(|s| -s).collect()];
@@ -287,7 +287,8 @@ impl Body {
         Ok(solved)
     }
 
-    /// The matrix of some nodes out of contact, of which the soft ones come first, and of nodes at some positions of the contact.
+    /// The matrix of some nodes out of contact, of which the soft ones come first, and of nodes at some positions of
+    /// the contact.
     pub(super) fn watch(
         &mut self,
         nodes: &[usize],

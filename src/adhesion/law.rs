@@ -4,10 +4,12 @@ use crate::error::AdhesionError;
 use crate::kernel::KernelTable;
 use crate::{Error, InfluenceKernel};
 
-/// Slope times compliance of a cell that a law gets where it may choose: a triangle, and the slope at the end of Maugis' law.
+/// Slope times compliance of a cell that a law gets where it may choose: a triangle, and the slope at the end of
+/// Maugis' law.
 const TRIANGLE: f64 = 0.45;
 const BORDER: f64 = 0.5;
-/// Beyond the first the branches contain loops that the mesh makes, which is said; beyond the second the law is refused.
+/// Beyond the first the branches contain loops that the mesh makes, which is said; beyond the second the law is
+/// refused.
 const WARNED: f64 = 0.5;
 const GREATEST: f64 = 0.8;
 
@@ -18,8 +20,8 @@ const GREATEST: f64 = 0.8;
 /// \qquad k = \frac{\sigma_0}{h_2 - h_1}, \qquad w = \tfrac12 \sigma_0 (h_1 + h_2)
 /// ```
 ///
-/// This is the law of Maugis (1992) with a slope for its outer border, which keeps every event of a path exact and cells from snapping
-/// one by one. Where the gap is 0 the pressure is −σ₀ or more.
+/// This is the law of Maugis (1992) with a slope for its outer border, which keeps every event of a path exact and
+/// cells from snapping one by one. Where the gap is 0 the pressure is −σ₀ or more.
 ///
 /// ```
 /// use asperity::adhesion::Adhesion;
@@ -44,15 +46,15 @@ pub struct Adhesion {
 }
 
 impl Adhesion {
-    /// A triangle, h₁ = 0, of this work of adhesion w \[J/m²\]. Unless a [`range`](Self::range) is given it is as short as the cells of
-    /// the path resolve, k C(0,0) = 0.45: the limit of JKR as far as this mesh goes.
+    /// A triangle, h₁ = 0, of this work of adhesion w \[J/m²\]. Unless a [`range`](Self::range) is given it is as short
+    /// as the cells of the path resolve, k C(0,0) = 0.45: the limit of JKR as far as this mesh goes.
     #[must_use]
     pub fn work(work: f64) -> Self {
         Self { work, stress: None, range: None }
     }
 
-    /// Maugis' law of this work of adhesion w \[J/m²\] and cohesive stress σ₀ \[Pa\]. Unless a [`range`](Self::range) is given the slope
-    /// at its outer border is as steep as the cells of the path resolve, k C(0,0) = 0.5.
+    /// Maugis' law of this work of adhesion w \[J/m²\] and cohesive stress σ₀ \[Pa\]. Unless a [`range`](Self::range)
+    /// is given the slope at its outer border is as steep as the cells of the path resolve, k C(0,0) = 0.5.
     #[must_use]
     pub fn maugis(work: f64, stress: f64) -> Self {
         Self { work, stress: Some(stress), range: None }
@@ -128,8 +130,9 @@ impl Adhesion {
         }
         if resolution > WARNED * (1.0 + 1e-12) {
             log::warn!(
-                "the slope of the cohesive law times the compliance of a cell is {resolution:.2}, above {WARNED}: the loop of loading and \
-                 unloading contains a part that the mesh makes; finer cells, or a longer range, have none"
+                "the slope of the cohesive law times the compliance of a cell is {resolution:.2}, above {WARNED}: the \
+                 loop of loading and unloading contains a part that the mesh makes; finer cells, or a longer range, \
+                 have none"
             );
         }
         Ok(law)
@@ -184,8 +187,8 @@ impl CohesiveLaw {
         self.slope() * self.compliance
     }
 
-    /// Tabor's number `μ = σ₀ (9R / (2π w E*²))^⅓ / 1.157` of a sphere of a radius R \[m\] and the modulus E* \[Pa\], after the cohesive
-    /// stress: above 3 contact is nearly that of JKR, below 0.3 nearly that of DMT.
+    /// Tabor's number `μ = σ₀ (9R / (2π w E*²))^⅓ / 1.157` of a sphere of a radius R \[m\] and the modulus E* \[Pa\],
+    /// after the cohesive stress: above 3 contact is nearly that of JKR, below 0.3 nearly that of DMT.
     #[must_use]
     pub fn tabor_parameter(&self, radius: f64, e_star: f64) -> f64 {
         let cube = 9.0 * radius / (2.0 * std::f64::consts::PI * self.work() * e_star * e_star);

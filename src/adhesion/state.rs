@@ -63,8 +63,8 @@ impl Direction {
     }
 }
 
-/// A state of a branch of an [`AdhesivePath`](super::AdhesivePath): the instant of an event, with the event already done, but for
-/// [`AdhesiveEvent::JumpStart`].
+/// A state of a branch of an [`AdhesivePath`](super::AdhesivePath): the instant of an event, with the event already
+/// done, but for [`AdhesiveEvent::JumpStart`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -77,8 +77,9 @@ pub struct AdhesiveState {
     pub event: AdhesiveEvent,
     /// The node to which it happens, (ix, iy); at a jump the one that was unstable, at a limit that of the last event.
     pub node: (usize, usize),
-    /// Scalars: approach (from first touch of surfaces that do not pull: negative at first), load (negative where the surfaces are pulled),
-    /// area of nodes whose gap is 0, mean gap, elastic energy. Stiffnesses are derivatives on the way of the branch, and may be negative.
+    /// Scalars: approach (from first touch of surfaces that do not pull: negative at first), load (negative where the
+    /// surfaces are pulled), area of nodes whose gap is 0, mean gap, elastic energy. Stiffnesses are derivatives on the
+    /// way of the branch, and may be negative.
     pub contact: ContactState,
     /// Nodes on the slope of the law.
     pub soft_nodes: usize,

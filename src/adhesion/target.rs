@@ -25,7 +25,8 @@ pub(super) struct Measured {
     pub(super) stiffness: f64,
 }
 
-/// Rates below this part of those of a free surface are rounding: in full contact mean planes of a periodic half-space do not approach.
+/// Rates below this part of those of a free surface are rounding: in full contact mean planes of a periodic half-space
+/// do not approach.
 const LEAST_RATE: f64 = 1e-11;
 
 impl Targets {
@@ -116,8 +117,8 @@ impl Targets {
         direction == Direction::Unloading && self.nodes.is_some_and(|nodes| contact_nodes <= nodes)
     }
 
-    /// Whether a state is beyond a target: behind a jump, in which all but the load goes the way of the branch, or once unloading has come
-    /// down to an area.
+    /// Whether a state is beyond a target: behind a jump, in which all but the load goes the way of the branch, or once
+    /// unloading has come down to an area.
     pub(super) fn is_past(&self, state: &ContactState, direction: Direction) -> bool {
         let is_beyond = |target: &ContactTarget| match *target {
             ContactTarget::Load(_) => false,

@@ -2,8 +2,7 @@
 
 use super::board::{Beginning, Board, Change, Left, Row};
 use super::front::{Body, Field, Front, Parameter};
-use super::law::CohesiveLaw;
-use super::path::Totals;
+use super::moment::{Moment, Totals};
 use super::state::{AdhesiveEvent, Direction, NodeState};
 use super::target::{Measured, Targets};
 use crate::Error;
@@ -11,8 +10,8 @@ use crate::error::AdhesionError;
 use crate::kernel::Gauge;
 use crate::updater::Schur;
 
-/// By how much a node may be beyond its law at the end of a window: in gaps relative to the range and to the greatest length, and in
-/// pressures relative to the stress.
+/// By how much a node may be beyond its law at the end of a window: in gaps relative to the range and to the greatest
+/// length, and in pressures relative to the stress.
 const SLACK: f64 = 1e-10;
 const ROUNDING: f64 = 1e-12;
 /// A window that its end contradicts is tried again so often, with fewer events and more nodes.
@@ -25,41 +24,6 @@ pub(super) struct View<'a> {
     pub(super) gauge: Gauge,
     pub(super) totals: Totals,
     pub(super) last_node: usize,
-}
-
-/// Scalars at an instant.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Moment {
-    /// In the gauge of the kernel.
-    pub(super) approach: f64,
-    /// Of all pressures and of all gaps, with their rates along the approach in the direction of the branch.
-    pub(super) sums: [[f64; 2]; 2],
-    pub(super) contact_nodes: usize,
-    /// Soft nodes, and cohesive ones.
-    pub(super) pulled: [usize; 2],
-    /// Energy of adhesion over the area of a cell.
-    pub(super) energy: f64,
-    pub(super) totals: Totals,
-}
-
-impl Moment {
-    /// At a front of which all is known.
-    pub(super) fn of(law: &CohesiveLaw, front: &Front, field: &Field, totals: Totals) -> Self {
-        let gaps = front.nodes.iter().zip(&field.gap[0]);
-        let energy = gaps.map(|(state, &gap)| match state {
-            NodeState::Open => 0.0,
-            NodeState::Contact => -law.work(),
-            _ => law.energy(gap),
-        });
-        Self {
-            approach: front.approach,
-            sums: field.sums(),
-            contact_nodes: front.count(NodeState::Contact),
-            pulled: [NodeState::Soft, NodeState::Cohesive].map(|state| front.count(state)),
-            energy: energy.sum(),
-            totals,
-        }
-    }
 }
 
 /// A window, and where it has led.
@@ -76,9 +40,9 @@ pub(super) struct Played {
     pub(super) taken_back: usize,
 }
 
-/// Follows events until something may happen to a node that is not watched, until a jump begins or the pull of its next node is carried,
-/// or to a target; `None` if nothing happens any more. What the end contradicts is tried again with the nodes that do, and with fewer
-/// events.
+/// Follows events until something may happen to a node that is not watched, until a jump begins or the pull of its next
+/// node is carried, or to a target; `None` if nothing happens any more. What the end contradicts is tried again with
+/// the nodes that do, and with fewer events.
 pub(super) fn follow(
     body: &mut Body,
     front: &Front,

@@ -9,8 +9,8 @@ use thiserror::Error;
 pub enum AdhesionError {
     /// The slope of the law is too steep for the cells: single nodes would snap where the surface does not.
     #[error(
-        "the slope of the cohesive law times the compliance of a cell is {resolution:.3}, and may be {greatest} at most: single nodes \
-         would snap. It takes cells of {} instead of {}, or a longer range of adhesion",
+        "the slope of the cohesive law times the compliance of a cell is {resolution:.3}, and may be {greatest} at \
+         most: single nodes would snap. It takes cells of {} instead of {}, or a longer range of adhesion",
         quantity(*cell_needed, "m", 3), quantity(*cell, "m", 3)
     )]
     Unresolved {
@@ -26,8 +26,8 @@ pub enum AdhesionError {
 
     /// The outer border of Maugis' law is a slope as wide as the cells need, and there is no room for it.
     #[error(
-        "a cohesive stress of {} acts over a range of {} only, and the slope at its end takes {} on cells of {}: it takes cells of {}, or \
-         the law without a stress, which is as short as the cells allow",
+        "a cohesive stress of {} acts over a range of {} only, and the slope at its end takes {} on cells of {}: it \
+         takes cells of {}, or the law without a stress, which is as short as the cells allow",
         quantity(*stress, "Pa", 3), quantity(*range, "m", 3), quantity(*slope, "m", 3), quantity(*cell, "m", 3),
         quantity(*cell_needed, "m", 3)
     )]
@@ -46,8 +46,9 @@ pub enum AdhesionError {
 
     /// Adhesion on a body of which nothing is known.
     #[error(
-        "adhesion needs a body on which contact is known to grow without it: on this one, as under a stiff layer, a pull in one place may \
-         open a gap in another, and loading and unloading have no branches that do not depend on the order of nodes"
+        "adhesion needs a body on which contact is known to grow without it: on this one, as under a stiff layer, a \
+         pull in one place may open a gap in another, and loading and unloading have no branches that do not depend \
+         on the order of nodes"
     )]
     GrowthUnknown,
 
@@ -66,8 +67,8 @@ pub enum AdhesionError {
 
     /// Nodes beyond those that were expected change at once, however few events are followed together.
     #[error(
-        "at approach {approach} node ({ix}, {iy}) is beyond its law by {value} of the range of adhesion after one event: the kernel is too \
-         ill-conditioned, or breaks the growth of contact that it promises"
+        "at approach {approach} node ({ix}, {iy}) is beyond its law by {value} of the range of adhesion after one \
+         event: the kernel is too ill-conditioned, or breaks the growth of contact that it promises"
     )]
     NotOnLaw {
         /// Node index along x.

@@ -1,5 +1,5 @@
-//! Every equilibrium of a small grid, found by trying all states of all nodes: loading is at the one of the greatest gaps, and unloading at that of
-//! the least.
+//! Every equilibrium of a small grid, found by trying all states of all nodes: loading is at the one of the greatest
+//! gaps, and unloading at that of the least.
 
 use asperity::adhesion::{Adhesion, AdhesiveEvent, AdhesiveFields, AdhesivePath, CohesiveLaw};
 use asperity::surface::HeightMap;
@@ -97,7 +97,8 @@ fn check(
     let mut most = 0;
     let mut compare = |path: &mut AdhesivePath, is_loading: bool| {
         path.by_ref().try_for_each(|state| state.map(|_| ())).unwrap();
-        // Behind a jump that went past the end a node may be at a corner of its law; and mean planes approach so far and no further.
+        // Behind a jump that went past the end a node may be at a corner of its law; and mean planes approach so far
+        // and no further.
         let Some(state) = path.state().filter(|state| state.event == AdhesiveEvent::Limit) else {
             return;
         };

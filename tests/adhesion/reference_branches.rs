@@ -1,4 +1,5 @@
-//! Both branches against events of a solver that shares no code with this crate and solves each with a fresh dense inverse.
+//! Both branches against events of a solver that shares no code with this crate and solves each with a fresh dense
+//! inverse.
 
 use std::path::{Path, PathBuf};
 
@@ -100,8 +101,8 @@ fn last_of_each<T>(events: Vec<T>, approach: impl Fn(&T) -> f64) -> Vec<T> {
     last
 }
 
-/// The same events at the same nodes in the same order, and every column within 1e-9 of the greatest value, energies within 1e-12. Where nodes
-/// have their events together, what is behind the last of them.
+/// The same events at the same nodes in the same order, and every column within 1e-9 of the greatest value, energies
+/// within 1e-12. Where nodes have their events together, what is behind the last of them.
 fn compare(name: &str, mut truth: Vec<Truth>, mut states: Vec<AdhesiveState>, has_ties: bool) {
     let greatest = |value: &dyn Fn(&Truth) -> f64| {
         truth.iter().map(|event| value(event).abs()).fold(0.0, f64::max)

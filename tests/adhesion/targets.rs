@@ -28,7 +28,8 @@ fn run(path: &mut AdhesivePath) -> Vec<AdhesiveState> {
     path.by_ref().map(|state| state.unwrap()).collect()
 }
 
-/// A branch ends at exactly what was asked for, negative loads and approaches too, and goes on from there as if nothing had been.
+/// A branch ends at exactly what was asked for, negative loads and approaches too, and goes on from there as if nothing
+/// had been.
 #[test]
 fn branches_end_at_their_targets() {
     let whole = run(&mut path(None));
@@ -112,7 +113,8 @@ fn a_path_turns_where_it_is() {
     }
 }
 
-/// Little adhesion changes little: load and area at an approach are those of the elastic path, to what so small a stress can carry.
+/// Little adhesion changes little: load and area at an approach are those of the elastic path, to what so small a
+/// stress can carry.
 #[test]
 fn little_adhesion_is_none() {
     let (surface, kernel) = (surface(), kernel());

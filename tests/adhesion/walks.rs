@@ -1,4 +1,5 @@
-//! What holds of every path: energies balance, nothing is gained, closed minor loops restore the state, and every state is on its law.
+//! What holds of every path: energies balance, nothing is gained, closed minor loops restore the state, and every state
+//! is on its law.
 
 use asperity::adhesion::{Adhesion, AdhesiveFields, AdhesivePath, AdhesiveState, NodeState};
 use asperity::surface::{Amplitude, SelfAffine};
