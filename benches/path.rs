@@ -78,7 +78,10 @@ fn pressure(criterion: &mut Criterion) -> Result<(), asperity::Error> {
                 states.extend(path.by_ref().map(succeed));
             }
             let mut last = states.iter().rev().take(2).cycle();
-            bencher.iter(|| last.next().map(|state| succeed(path.pressure_at(state))));
+            bencher.iter(|| {
+                last.next()
+                    .map(|state| succeed(path.fields_at(state).map(|fields| fields.pressure)))
+            });
         });
     }
     group.finish();

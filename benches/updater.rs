@@ -4,9 +4,9 @@
 //! substitution: k n², Schur complement: k² n) and in bytes of the factor where memory is
 //! (solution, join). `cargo bench -p asperity-benches --bench updater -- solution/4000` runs some of them.
 
-use std::cell::RefCell;
 use std::error::Error;
 use std::hint::black_box;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use asperity::contact::ContactSequence;
@@ -45,11 +45,13 @@ fn sphere() -> Result<(Paraboloid, Boussinesq), asperity::Error> {
 
 /// The first window of the path of the sphere with at least `at` nodes in contact.
 fn window(at: usize) -> Result<Window, Box<dyn Error>> {
-    let (begun, complete) = (RefCell::new(None), RefCell::new(None));
-    let capture = Altered::new(RecursiveCholesky::new()).on_call(|inner, call| {
+    let complete = Arc::new(Mutex::new(None));
+    let found = Arc::clone(&complete);
+    let mut begun = None;
+    let capture = Altered::new(RecursiveCholesky::new()).on_call(move |inner, call| {
         match call {
             Call::Watch { contact, nodes, .. } if contact.len() >= at => {
-                begun.borrow_mut().get_or_insert_with(|| Window {
+                begun.get_or_insert_with(|| Window {
                     updater: inner.clone(),
                     contact: contact.clone(),
                     watched: nodes.to_vec(),
@@ -57,10 +59,10 @@ fn window(at: usize) -> Result<Window, Box<dyn Error>> {
                     grown: contact.clone(),
                 });
             }
-            Call::Join { contact, factor, .. } if complete.borrow().is_none() => {
-                if let Some(window) = begun.borrow_mut().take() {
+            Call::Join { contact, factor, .. } => {
+                if let (Some(window), Ok(mut found)) = (begun.take(), found.lock()) {
                     let (touched, grown) = (factor.clone(), contact.clone());
-                    *complete.borrow_mut() = Some(Window { touched, grown, ..window });
+                    found.get_or_insert(Window { touched, grown, ..window });
                 }
             }
             _ => {}
@@ -69,11 +71,13 @@ fn window(at: usize) -> Result<Window, Box<dyn Error>> {
     });
     let (surface, kernel) = sphere()?;
     let mut path = LoadingSolver::builder(&surface, &kernel).updater(capture).build()?;
-    while complete.borrow().is_none() {
+    loop {
         path.next().ok_or("the path is too short")??;
+        let found = complete.lock().map_err(|_| "a panic")?.take();
+        if let Some(window) = found {
+            return Ok(window);
+        }
     }
-    drop(path);
-    Ok(complete.into_inner().ok_or("no window")?)
 }
 
 /// The time that `part` of the updater's timings grows by in `count` calls of `work`.

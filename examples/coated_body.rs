@@ -35,9 +35,9 @@ fn main() -> Result<(), Error> {
         let solution = FixedLoadSolver::new(&surface, &kernel)?.solve(load)?;
         println!(
             "{name:20} {:12.2} {:24.2} {:11.2}",
-            100.0 * solution.state.contact_area_fraction,
-            solution.max_pressure() / 1e9,
-            solution.state.interfacial_stiffness.unwrap_or(f64::NAN) / 1e9
+            100.0 * solution.contact.contact_area_fraction,
+            solution.fields.max_pressure() / 1e9,
+            solution.contact.interfacial_stiffness.unwrap_or(f64::NAN) / 1e9
         );
     }
     Ok(())

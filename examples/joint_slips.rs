@@ -33,7 +33,6 @@
 //! ```
 
 use asperity::bed::Bed;
-use asperity::loading::History;
 use asperity::slip::{Friction, PartialSlip, SlipHistory};
 use asperity::surface::Amplitude;
 use asperity::{Error, Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine, composite_modulus};
@@ -50,7 +49,7 @@ fn main() -> Result<(), Error> {
     let surface = SelfAffine::new(0.8, side / 4.0, side / 16.0, Amplitude::RmsHeight(0.3e-6), 1)?;
     let load = MEAN_PRESSURE * grid.nominal_area();
     let mut path = LoadingSolver::builder(&surface, &half_space).max_load(1.2 * load).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
 
     let bed = Bed::new(&history)?;
     let friction = Friction::between(FRICTION, steel, Some(steel))?;

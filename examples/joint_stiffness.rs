@@ -56,7 +56,7 @@ fn main() -> Result<(), Error> {
         let mut solver = FixedLoadSolver::new(&surface, half_space)?;
         let loads = PARTS.map(|part| part * preload_pressure * grid.nominal_area());
         for solution in solver.sweep(loads.map(ContactTarget::Load)) {
-            let state = solution?.state;
+            let state = solution?.contact;
             let per_area = |stiffness: Option<f64>| match stiffness {
                 Some(stiffness) => format!("{:.3e}", stiffness / grid.nominal_area()),
                 None => "-".to_string(),
@@ -74,7 +74,7 @@ fn main() -> Result<(), Error> {
 
     let at_preload = FixedLoadSolver::new(&surface, &half_spaces[0].1)?
         .solve(preload_pressure * grid.nominal_area())?
-        .state;
+        .contact;
     if let Some(stiffness) = at_preload.interfacial_stiffness {
         let joint = stiffness / grid.nominal_area() * JOINT_AREA;
         println!("\nthe interface of the joint at its preload of {PRELOAD} N: {joint:.3e} N/m");

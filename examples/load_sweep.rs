@@ -46,7 +46,7 @@ fn main() -> Result<(), Error> {
     let loads = (0..=15).map(|k| greatest * 10_f64.powf(f64::from(k - 15) / 5.0));
     println!("   load [N]  contact [%]  mean gap [m]  interfacial stiffness [N/m]");
     for solution in solver.sweep(loads.map(ContactTarget::Load)) {
-        let state = solution?.state;
+        let state = solution?.contact;
         println!(
             "{:11.4e} {:12.3} {:13.4e} {:28.4e}",
             state.load,

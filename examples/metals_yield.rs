@@ -40,7 +40,7 @@ fn main() -> Result<(), Error> {
     let builder = || LoadingSolver::builder(&surface, &half_space).max_load(load);
     let elastic: History = builder().build()?.collect::<Result<_, _>>()?;
     let mut path = builder().hardness(HARDNESS).build()?;
-    let yielding: History = path.by_ref().collect::<Result<_, _>>()?;
+    let yielding = path.run()?;
 
     println!("load [N]   contact if elastic [%]   contact [%]   yielded [%]   lost [J]");
     for part in [0.01, 0.1, 0.5, 1.0] {

@@ -31,7 +31,7 @@ fn main() -> Result<(), Error> {
 
     let mut solver = FixedLoadSolver::builder(&surface, &half_space).build()?;
     let solution = solver.solve(1000.0)?; // [N]
-    let state = solution.state;
+    let state = solution.contact;
     println!(
         "{} of {} nodes in contact, {:.2} %",
         state.contact_nodes,
@@ -40,7 +40,7 @@ fn main() -> Result<(), Error> {
     );
     println!("approach           {:.4e} m", state.approach);
     println!("mean gap           {:.4e} m", state.mean_gap);
-    println!("greatest pressure  {:.4e} Pa", solution.pressure.max());
+    println!("greatest pressure  {:.4e} Pa", solution.fields.pressure.max());
     if let Some(stiffness) = state.contact_stiffness {
         println!("contact stiffness  {stiffness:.4e} N/m");
     }

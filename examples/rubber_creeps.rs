@@ -35,9 +35,9 @@
 
 use asperity::bed::Bed;
 use asperity::creep::{
-    Corners, Course, Creep, CycleSettings, Prony, Relaxation, Steps, ViscoelasticBed,
+    ControlHistory, Creep, CycleSettings, PiecewiseLinear, Prony, Relaxation, Steps,
+    ViscoelasticBed,
 };
-use asperity::loading::History;
 use asperity::patches::{Connectivity, Percolation, contact_sequence};
 use asperity::surface::Amplitude;
 use asperity::{
@@ -53,12 +53,12 @@ fn main() -> Result<(), Error> {
     let rubber = Prony::shares(&[(0.1, 0.3), (10.0, 0.5)])?;
 
     let mut path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.7).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     let bed = Bed::new(&history)?;
 
     // A load put on within a second and held: in closed form.
     let load = 0.03; // [N], a mean pressure of 0.03 MPa
-    let creep = Creep::new(&bed, &rubber, &Corners::ramp(load, 1.0)?)?;
+    let creep = Creep::new(&bed, &rubber, &PiecewiseLinear::ramp(load, 1.0)?)?;
     println!("time [s]   contact [%]   mean gap [µm]   greatest pressure [MPa]   (load {load} N)");
     for time in [1.0, 3.0, 10.0, 30.0, 100.0, 1000.0] {
         let state = creep.at(time)?;
@@ -81,7 +81,7 @@ fn main() -> Result<(), Error> {
 
     // Clamped at the approach that the load has at once.
     let approach = bed.at_load(load)?.approach;
-    let clamped = Relaxation::new(&bed, &rubber, &Corners::step(approach)?)?;
+    let clamped = Relaxation::new(&bed, &rubber, &PiecewiseLinear::step(approach)?)?;
     println!(
         "clamped, it bears {:.4} N at once and {:.4} N after 1000 s",
         clamped.at(0.0)?.load,
@@ -89,14 +89,14 @@ fn main() -> Result<(), Error> {
     );
 
     // Half of the load taken away after a minute: contact recedes, and the bed is stepped in time.
-    let course = Corners::ramp(load, 1.0)?.hold(60.0)?.to(0.5 * load, 1.0)?.hold(60.0)?;
+    let course = PiecewiseLinear::ramp(load, 1.0)?.hold(60.0)?.to(0.5 * load, 1.0)?.hold(60.0)?;
     let creep = Creep::new(&bed, &rubber, &course)?;
     if let Some(recession) = creep.recession() {
         println!("unloaded by half, contact recedes from {:.3} s on", recession.time);
     }
     let times = Steps::default().times(&rubber, &course, course.end())?;
     let mut contact = ViscoelasticBed::new(&bed, &rubber)?;
-    let states = contact.follow(&Course::Load(course), &times)?;
+    let states = contact.follow(&ControlHistory::Load(course), &times)?;
     for time in [61.0, 62.0, 122.0] {
         let state =
             states.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
@@ -113,7 +113,7 @@ fn main() -> Result<(), Error> {
         let cycle = contact.cycle(0.5 * load, 0.1 * load, 1.0 / frequency, settings)?;
         println!(
             "at {frequency:5} Hz a cycle loses {:.3e} J, loss factor {:.3}",
-            cycle.dissipated, cycle.loss_factor
+            cycle.dissipation, cycle.loss_factor
         );
     }
     Ok(())

@@ -41,7 +41,6 @@
 //! ```
 
 use asperity::leak::Seal;
-use asperity::loading::History;
 use asperity::surface::{Amplitude, Axis};
 use asperity::{ContactTarget, Error, Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine};
 
@@ -57,7 +56,7 @@ fn main() -> Result<(), Error> {
     let surface = SelfAffine::new(0.8, side / 6.0, side / 24.0, Amplitude::RmsHeight(1e-6), 1)?;
     let half_space = PeriodicBoussinesq::new(grid, E_STAR)?;
     let mut path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.6).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
 
     let seal = Seal::new(VISCOSITY, PRESSURE_DROP, Axis::X)?;
     let curve = seal.curve(&mut path, &history, 20)?;

@@ -35,7 +35,7 @@ fn main() -> Result<(), Error> {
     // The path has ended at exactly this pressure, unless all nodes were in contact before.
     println!("the path ended by    {:?}", path.end());
     let contact = path.present()?.contact;
-    let pressure = path.pressure()?;
+    let pressure = path.fields()?.pressure;
     println!("nodes in contact     {}", contact.contact_nodes);
     println!("contact area         {:.4} of the nominal", contact.contact_area_fraction);
     println!("approach             {:.4e} m", contact.approach);

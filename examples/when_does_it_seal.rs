@@ -24,7 +24,6 @@
 //! around the grid    no channel along y               39.63         48.45           0.261
 //! ```
 
-use asperity::loading::History;
 use asperity::patches::{Connectivity, Percolation, contact_sequence};
 use asperity::surface::Amplitude;
 use asperity::{Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine};
@@ -39,7 +38,7 @@ fn main() -> Result<(), Error> {
     let surface = SelfAffine::new(0.8, side / 6.0, side / 24.0, Amplitude::RmsHeight(1e-6), 1)?;
     let half_space = PeriodicBoussinesq::new(grid, E_STAR)?;
     let mut path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.6).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     let events = history.events();
     let contact = contact_sequence(grid, events.iter().map(|state| (state.event, state.node)))?;
 

@@ -22,7 +22,6 @@
 //! with friction 0.3 it yields first under 58.5 N, 53.2 µm deep, with 325 nodes in contact
 //! ```
 
-use asperity::loading::History;
 use asperity::stress::{Measure, Subsurface};
 use asperity::surface::Paraboloid;
 use asperity::{Boussinesq, Error, Grid, LoadingSolver, composite_modulus};
@@ -34,8 +33,8 @@ fn main() -> Result<(), Error> {
     let half_space = Boussinesq::new(Grid::square(65, 0.8e-3)?, composite_modulus(steel, steel)?)?;
     let mut path =
         LoadingSolver::builder(&Paraboloid::new(5e-3)?, &half_space).max_load(300.0).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
-    let pressure = path.pressure()?;
+    let history = path.run()?;
+    let pressure = path.fields()?.pressure;
 
     let below = Subsurface::of(&half_space, steel.1)?;
     println!("under 300 N the greatest pressure is {:.3} GPa", 1e-9 * pressure.max());

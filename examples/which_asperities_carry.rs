@@ -37,16 +37,20 @@ fn main() -> Result<(), Error> {
     let half_space = Boussinesq::new(grid, E_STAR)?;
     let solution = FixedLoadSolver::new(&surface, &half_space)?.solve(LOAD)?;
 
-    let patches =
-        Patches::new(&solution.contact_map, &grid, half_space.boundary(), Connectivity::Four)?;
-    let loads = patches.loads(&solution.pressure)?;
+    let patches = Patches::new(
+        &solution.fields.contact_map,
+        &grid,
+        half_space.boundary(),
+        Connectivity::Four,
+    )?;
+    let loads = patches.loads(&solution.fields.pressure)?;
     let mut both: Vec<_> = patches.patches().iter().zip(&loads).collect();
     both.sort_by(|a, b| b.1.load.total_cmp(&a.1.load));
 
     println!(
         "{} patches under {LOAD} N, {:.2} % of the nominal area",
         both.len(),
-        100.0 * solution.state.contact_area_fraction
+        100.0 * solution.contact.contact_area_fraction
     );
     println!("   x [µm]    y [µm]   area [µm²]   load [%]   sum [%]   mean p [GPa]   max p [GPa]");
     let mut sum = 0.0;
@@ -58,8 +62,8 @@ fn main() -> Result<(), Error> {
             1e6 * x,
             1e6 * y,
             1e12 * patch.area,
-            100.0 * carried.load / solution.state.load,
-            100.0 * sum / solution.state.load,
+            100.0 * carried.load / solution.contact.load,
+            100.0 * sum / solution.contact.load,
             carried.mean_pressure / 1e9,
             carried.max_pressure / 1e9
         );

@@ -18,7 +18,7 @@
 //!     let contact = state?.contact;
 //!     println!("{} nodes carry {} N", contact.contact_nodes, contact.load);
 //! }
-//! let pressure = path.pressure()?; // at exactly 100 MPa
+//! let pressure = path.fields()?.pressure; // at exactly 100 MPa
 //! # assert!(pressure.max() > 100e6);
 //! # Ok(())
 //! # }
@@ -140,7 +140,7 @@ pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,
     PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
-pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
+pub use loading::{ContactEvent, ContactRule, LoadingPath, LoadingSolver, LoadingState};
 pub use problem::Problem;
 pub use updater::{LinearUpdater, RecursiveCholesky};
 pub use warning::Warning;

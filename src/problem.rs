@@ -23,7 +23,7 @@ use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Problem {
     table: Arc<KernelTable>,
     gap: Vec<f64>,

@@ -5,8 +5,8 @@ use crate::bed::{Bed, BedState, Piece, Spring, Superposed, Superposition};
 use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
 use crate::convolution::Convolution;
 use crate::creep::{
-    Corners, Course, Creep, CreepState, Cycle, Prony, Recession, Relaxation, Unloading,
-    UnloadingState, ViscoelasticBed,
+    ControlHistory, Creep, CreepState, Cycle, PiecewiseLinear, Prony, Recession, Relaxation,
+    Unloading, UnloadingState, ViscoelasticBed,
 };
 use crate::fixed_load::{FixedLoadSolution, FixedLoadSolver, LoadSweep, SolverEffort};
 use crate::joint::{
@@ -134,8 +134,8 @@ send_and_sync!(
     Westergaard,
 );
 send_and_sync!(
-    Corners,
-    Course,
+    PiecewiseLinear,
+    ControlHistory,
     Creep<'static>,
     CreepState,
     Cycle,

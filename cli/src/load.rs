@@ -152,7 +152,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     for (k, &load) in loads.iter().enumerate() {
         note!("load {} of {}: {}", k + 1, loads.len(), quantity(load, "N", 6));
         let solved = solve(&mut solver, load).and_then(|(solution, effort)| {
-            let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
+            let resolution =
+                Resolution::of(&solution.fields.contact_map, &grid, half_space.boundary());
             let resolution = resolution
                 .map_err(|error| Failure::new("cannot find the contact patches", error))?;
             let numbers = numbers(&solution, &resolution, &grid);
@@ -166,10 +167,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             }
             print_words(&solution, &resolution, effort.1);
             let on = (&grid, half_space.boundary());
-            let warnings = Warning::of_contact(&solution.pressure, &solution.contact_map, on)
-                .map_err(|error| Failure::new("cannot look at the contact", error))?;
-            let yields = solution.plastic.is_some();
-            let high = bodies.warning_of(solution.max_pressure()).filter(|_| !yields);
+            let warnings =
+                Warning::of_contact(&solution.fields.pressure, &solution.fields.contact_map, on)
+                    .map_err(|error| Failure::new("cannot look at the contact", error))?;
+            let yields = solution.contact.plastic.is_some();
+            let high = bodies.warning_of(solution.fields.max_pressure()).filter(|_| !yields);
             for warning in warnings.iter().chain(&high) {
                 eprintln!("warning: {}", advice::told(warning));
             }
@@ -178,13 +180,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         match solved {
             Ok(solution) => {
                 let picture = options.out.join(format!("contact_map_{k}.png"));
-                let FixedLoadSolution { state, pressure, contact_map, .. } = &solution;
+                let FixedLoadSolution { contact, fields, .. } = &solution;
+                let yielded = contact.plastic.map(|_| &fields.yielded_map);
                 outcome.written(draw_map(
                     &grid,
-                    state,
-                    pressure,
-                    contact_map,
-                    solution.plastic.as_ref().map(|plastic| &plastic.yielded_map),
+                    contact,
+                    &fields.pressure,
+                    &fields.contact_map,
+                    yielded,
                     &picture,
                 ));
                 if let Some(directory) = &options.save {
@@ -243,13 +246,14 @@ const COLUMNS: [&str; 13] = [
 
 /// The numbers of those columns; nothing where there is none.
 fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -> [String; 13] {
-    let state = solution.state;
+    let state = solution.contact;
+    let plastic = state.plastic.unwrap_or_default();
     let exact = |value: f64| format!("{value:e}");
     let optional = |value: Option<f64>| value.map_or_else(String::new, exact);
     [
         exact(state.load),
         state.contact_nodes.to_string(),
-        exact(solution.max_pressure()),
+        exact(solution.fields.max_pressure()),
         exact(state.mean_gap),
         exact(state.approach),
         optional(state.contact_stiffness),
@@ -258,8 +262,8 @@ fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -
         exact(state.contact_area),
         exact(state.contact_area_fraction),
         exact(resolution.corrected_area),
-        exact(solution.plastic.as_ref().map_or(0.0, |p| p.area / grid.nominal_area())),
-        exact(solution.plastic.as_ref().map_or(0.0, |plastic| plastic.volume)),
+        exact(plastic.yielded_area_fraction),
+        exact(plastic.volume),
     ]
 }
 
@@ -295,8 +299,8 @@ fn object(answer: &[(&str, String)]) -> Value {
 
 /// The lines for people.
 fn print_words(solution: &FixedLoadSolution, resolution: &Resolution, seconds_more: f64) {
-    let state = solution.state;
-    let greatest = solution.max_pressure();
+    let state = solution.contact;
+    let greatest = solution.fields.max_pressure();
     note!(
         "  contact {:.4} % of the nominal area, {resolution}",
         100.0 * state.contact_area_fraction
@@ -332,10 +336,10 @@ fn print_words(solution: &FixedLoadSolution, resolution: &Resolution, seconds_mo
         solution.effort.convolutions,
         solution.effort.coarse_convolutions,
     );
-    if let Some(plastic) = &solution.plastic {
+    if let Some(plastic) = &solution.contact.plastic {
         note!(
             "  {} yielded, plastic volume {}, energy lost {}",
-            counted(plastic.yielded_nodes(), "node"),
+            counted(plastic.yielded_nodes, "node"),
             quantity(plastic.volume, "m³", 4),
             quantity(plastic.work, "J", 4)
         );
@@ -347,7 +351,7 @@ fn print_words(solution: &FixedLoadSolution, resolution: &Resolution, seconds_mo
 
 /// Writes the fields of the K-th load.
 fn save(directory: &Path, solution: &FixedLoadSolution, k: usize) -> Result<Vec<PathBuf>, Failure> {
-    let fields = [("pressure", &solution.pressure), ("gap", &solution.gap)];
+    let fields = [("pressure", &solution.fields.pressure), ("gap", &solution.fields.gap)];
     let written = fields.map(|(name, field)| {
         let file = directory.join(format!("{name}_{k}.npy"));
         match write_npy(&file, field) {
@@ -376,7 +380,7 @@ fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
         if !is_right {
             return Err(Failure::request(format!(
                 "the contact under {} violates the contact conditions: {what} has an error of {error:.1e}, more than the allowed {allowed:.1e}",
-                quantity(solution.state.load, "N", 6)
+                quantity(solution.contact.load, "N", 6)
             )));
         }
     }

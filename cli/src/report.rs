@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use asperity::LoadingPath;
 use asperity::record::LoadingRecord;
 use asperity_cli::note;
 use asperity_cli::outcome::{self, Failure, Outcome};
-use asperity_report::{Fields, Report, Source};
+use asperity_report::{Report, Source};
 use clap::Args;
 
 use crate::shell;
@@ -60,7 +61,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 pub(crate) fn of_path(
     name: &str,
     record: &LoadingRecord,
-    fields: &mut dyn Fields,
+    fields: &mut LoadingPath,
     (folder, since): (&Path, SystemTime),
 ) -> Result<PathBuf, Failure> {
     let file = folder.join("report.html");

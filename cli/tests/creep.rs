@@ -64,7 +64,7 @@ fn a_held_load_is_that_of_the_reference() -> Done {
         assert!(folder.join("held").join(file).exists(), "{file}");
     }
     let (header, cycles) = table(&folder.join("held/cycles.csv"))?;
-    assert!(header.starts_with("frequency,amplitude,approach_amplitude,dissipated"));
+    assert!(header.starts_with("frequency,amplitude,approach_amplitude,dissipation"));
     assert!(cycles.len() > 10 && cycles.iter().all(|row| row[3] > 0.0));
 
     let said = run(&folder.0, &format!("creep path.npz {SERIES} --load 3.41e-7 --time 3 --json"))?;

@@ -45,7 +45,7 @@ fn stresses_are_printed_and_drawn() -> Done {
     let document: Value = serde_json::from_slice(&run(&folder.0, &json)?.stdout)?;
     let mut path = record.replay()?;
     let state = record.history().at_load(load).ok_or("no state")?;
-    let pressure = path.pressure_at(&state)?;
+    let pressure = path.fields_at(&state)?.pressure;
     let table = fs::read_to_string(folder.join("seen/stress.csv"))?;
     for (place, (ratio, coefficient)) in [(0.3, 0.2), (0.22, -0.2)].into_iter().enumerate() {
         let below = Subsurface::of_record(&record, ratio)?;

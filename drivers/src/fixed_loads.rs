@@ -89,7 +89,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         let context = |violation: Violation| violation.during(format!("{settings:?}, {target:?}"));
         let (found, target) = match (draw.whole(0, 3), &last, target) {
             (0, Some(last), _) => {
-                let load = last.state.load * draw.between(0.5, 1.5);
+                let load = last.contact.load * draw.between(0.5, 1.5);
                 let target = ContactTarget::Load(load);
                 (solver.solve_from(last, load), target)
             }

@@ -139,11 +139,13 @@ impl Judge {
     /// Looks at a solution.
     pub(crate) fn solution(&self, solution: &FixedLoadSolution, target: ContactTarget) -> Verdict {
         let mut tally = Tally::default();
-        let (state, dense) = (&solution.state, &self.dense);
+        let (state, dense) = (&solution.contact, &self.dense);
         let nodes = self.grid.nodes();
         let found = dense.scalars(state);
-        let pressure =
-            DVector::from_iterator(nodes, solution.pressure.iter().map(|p| dense.own_pressure(*p)));
+        let pressure = DVector::from_iterator(
+            nodes,
+            solution.fields.pressure.iter().map(|p| dense.own_pressure(*p)),
+        );
         let sum = pressure.sum();
         ensure!(pressure.min() >= 0.0, "a pressure is negative");
         let rounding = Dense::rounding(nodes);
@@ -155,9 +157,9 @@ impl Judge {
         let mut mean_gap = 0.0;
         let mut contact = Vec::new();
         for node in 0..nodes {
-            let (p, own) = (pressure[node], dense.own_length(solution.gap[node]));
+            let (p, own) = (pressure[node], dense.own_length(solution.fields.gap[node]));
             tally.close("gap", own, gap[node], rounding)?;
-            let in_contact = solution.contact_map[node];
+            let in_contact = solution.fields.contact_map[node];
             ensure!(
                 in_contact == (p > 0.0 || own <= 0.0),
                 "node {node} is in contact: {in_contact}, with pressure {p:e} and gap {own:e}"
@@ -193,7 +195,7 @@ impl Judge {
         contact: &[usize],
         tally: &mut Tally,
     ) -> Result<(), Violation> {
-        let found = self.dense.scalars(&solution.state);
+        let found = self.dense.scalars(&solution.contact);
         let Some(interfacial) = found.interfacial else {
             ensure!(!self.settings.stiffness, "there is no stiffness");
             return Ok(());
@@ -239,7 +241,7 @@ impl Judge {
         solution: &FixedLoadSolution,
         target: ContactTarget,
     ) -> Result<(), Violation> {
-        let state = &solution.state;
+        let state = &solution.contact;
         let tolerance = self.settings.tolerance;
         let is_there = match target {
             ContactTarget::Load(load) => state.load == load,

@@ -1,5 +1,6 @@
 //! Whole paths on small grids.
 
+use asperity::contact::ContactFields;
 use asperity::loading::{History, LoadingEnd};
 use asperity::{ContactGrowth, ContactRule, Error, Grid, InfluenceKernel, LoadingState};
 
@@ -203,14 +204,12 @@ impl<'a> Trial<'a> {
             let steps = history.events().partition_point(|s| s.step <= state.step);
             let mut walk = Walk::new(&self.dense, self.grid, demands);
             walk.skip(&history.events()[..steps])?;
-            match path.pressure_at(&state) {
-                Ok(pressure) => {
-                    let failed = |error: Error| Violation::new(error.to_string());
-                    let gap = path.gap_at(&state).map_err(failed)?;
-                    let depth = path.plastic_depth_at(&state).map_err(failed)?;
+            match path.fields_at(&state) {
+                Ok(ContactFields { pressure, gap, plastic_depth, .. }) => {
                     let context =
                         |violation: Violation| violation.during(format!("reading {state:?}"));
-                    walk.compare_fields(&state, [&pressure, &gap, &depth]).map_err(context)?;
+                    walk.compare_fields(&state, [&pressure, &gap, &plastic_depth])
+                        .map_err(context)?;
                     tally += walk.tally();
                     if self.sample.hardness.is_some() {
                         tally += self.beside(path, &state, &walk).map_err(context)?;

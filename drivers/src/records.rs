@@ -4,6 +4,7 @@ use std::io::{Cursor, Read, Write};
 
 use allocation_counter::measure;
 use asperity::Error;
+use asperity::contact::ContactFields;
 use asperity::loading::{History, LoadingState};
 use asperity::record::LoadingRecord;
 use asperity::updater::RecursiveCholesky;
@@ -134,15 +135,12 @@ fn bring_back(
     let replay = record.replay_on(&sample.kernel);
     let mut replay = replay.map_err(|error| Violation::new(format!("no replay: {error}")))?;
     let k = draw.whole(0, last);
-    let fields = replay.pressure_at(&states[k]).and_then(|pressure| {
-        Ok([pressure, replay.gap_at(&states[k])?, replay.plastic_depth_at(&states[k])?])
-    });
-    match fields {
-        Ok([pressure, gap, depth]) => {
+    match replay.fields_at(&states[k]) {
+        Ok(ContactFields { pressure, gap, plastic_depth, .. }) => {
             let demands = Demands { residual: ITERATED, ..Demands::EXACT };
             let mut walk = Walk::new(&dense, record.grid(), demands);
             walk.skip(&states[..=k])?;
-            walk.compare_fields(&states[k], [&pressure, &gap, &depth])
+            walk.compare_fields(&states[k], [&pressure, &gap, &plastic_depth])
                 .map_err(|violation| violation.during(format!("replay of {:?}", states[k])))?;
             Ok(walk.tally())
         }
@@ -206,7 +204,7 @@ fn read(bytes: &[u8], scratch: &Scratch) -> Verdict {
     if record.grid().nodes() <= SMALL && record.states().len() <= SMALL {
         // Answers or errors: numbers that somebody has changed are no path.
         if let (Ok(mut replay), Some(last)) = (record.replay(), record.states().last()) {
-            let _ = replay.pressure_at(last);
+            let _ = replay.fields_at(last);
         }
         if let Ok(path) = record.resume() {
             for state in path.take(SMALL) {

@@ -76,7 +76,7 @@ impl Variant {
         matches!(self.solver, Solver::Cholesky | Solver::Dense | Solver::Handover(None))
     }
 
-    fn updater(&self) -> Box<dyn LinearUpdater + Send> {
+    fn updater(&self) -> Box<dyn LinearUpdater> {
         match self.solver {
             Solver::Cholesky => Box::new(RecursiveCholesky::new()),
             Solver::Dense => Box::new(Dense::new()),
@@ -88,7 +88,7 @@ impl Variant {
     fn builder<'a>(
         &self,
         sample: &'a Sample,
-    ) -> Result<LoadingBuilder<'a, Box<dyn LinearUpdater + Send>>, Error> {
+    ) -> Result<LoadingBuilder<'a, Box<dyn LinearUpdater>>, Error> {
         let builder = sample.path().updater(self.updater()).rule(self.rule);
         let builder = match self.window {
             Some(nodes) => builder.window_size(nodes),
@@ -175,7 +175,7 @@ impl Variant {
 }
 
 /// A path with whichever updater.
-pub(crate) type Path = LoadingSolver<Box<dyn LinearUpdater + Send>>;
+pub(crate) type Path = LoadingSolver<Box<dyn LinearUpdater>>;
 
 /// What has become of a path.
 pub(crate) enum Run<T> {

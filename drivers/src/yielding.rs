@@ -111,20 +111,19 @@ impl Trial<'_> {
                 return Ok(());
             }
         };
-        let yielded = solution.plastic.as_ref().map(|plastic| &plastic.yielded_map);
+        let fields = &solution.fields;
         for (node, state) in set.states().iter().enumerate() {
-            let has_yielded = yielded.is_some_and(|map| map[node]);
-            let found = match (solution.contact_map[node], has_yielded) {
+            let found = match (fields.contact_map[node], fields.yielded_map[node]) {
                 (true, true) => Node::Yielded,
                 (true, false) => Node::Elastic,
                 _ => Node::Out,
             };
             ensure!(found == *state, "node {node} is {found:?}, and {state:?} on the path");
         }
-        let single = self.dense.scalars(&solution.state);
+        let single = self.dense.scalars(&solution.contact);
         // On one set the pressures of elastic nodes differ by what sums up to nothing: approaches by no more than gaps.
         tally.close("approach", single.own_approach, found.own_approach, 2.0 * error)?;
-        if let Some(plastic) = &solution.plastic {
+        if let Some(plastic) = &solution.contact.plastic {
             let volume = plastic.volume / self.grid.cell_area();
             let [expected, errors] = set.plastic(instant, 2.0 * set.norms.carried * error);
             let volume = self.dense.own_length(volume);

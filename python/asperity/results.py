@@ -570,7 +570,7 @@ class Cycle:
         [N]
     approach_amplitude : float
         Half of the range of the approach [m].
-    dissipated : float
+    dissipation : float
         Energy lost in the last cycle [J].
     stiffness : float
         Amplitude of the load over that of the approach [N/m].
@@ -588,7 +588,7 @@ class Cycle:
     mean_load: float
     amplitude: float
     approach_amplitude: float
-    dissipated: float
+    dissipation: float
     stiffness: float
     loss_factor: float
     approach: NDArray[np.float64] = field(compare=False, repr=False)

@@ -82,7 +82,7 @@ impl Increments {
     pub(crate) fn field<T: Send>(
         &self,
         py: Python<'_>,
-        compute: impl FnOnce(&mut dyn Engine, &Bed) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &Bed) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
         let Some(path) = &self.path else {
             return Err(Failure::arguments(

@@ -95,7 +95,7 @@ impl Seal {
     ) -> Fallible<Bound<'py, PyAny>> {
         let seal = self.seal;
         let (leak, mean_pressure) = path.at(py, state, |engine, state| {
-            Ok((engine.leak_at(&seal, state)?, state.contact.mean_pressure()))
+            Ok((seal.leak_at(engine, state)?, state.contact.mean_pressure()))
         })?;
         if check {
             warn_all(py, Warning::of_pressure_drop(seal.pressure_drop(), [mean_pressure]))?;
@@ -160,7 +160,7 @@ impl Seal {
         check: bool,
     ) -> Fallible<Bound<'py, PyAny>> {
         let (seal, history) = (self.seal, path.history_now(py).history);
-        let curve = path.computed(py, |engine| engine.leak_curve(&seal, &history, states))?;
+        let curve = path.computed(py, |engine| seal.curve(engine, &history, states))?;
         if check {
             let pressures = curve.points.iter().map(|point| point.state.contact.mean_pressure());
             warn_all(py, Warning::of_pressure_drop(seal.pressure_drop(), pressures))?;

@@ -4,15 +4,13 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use asperity::contact::Certificate;
+use asperity::Error;
 use asperity::io::write_whole;
-use asperity::nalgebra::DMatrix;
-use asperity::{Error, LoadingState};
-use asperity_report::{Fields, Report as Page, Source};
+use asperity_report::{Report as Page, Source};
 use pyo3::prelude::*;
 
 use crate::errors::Fallible;
-use crate::path::{Engine, LoadingPath};
+use crate::path::LoadingPath;
 
 /// Pixels of a page between other cells of a notebook.
 const HEIGHT: u32 = 900;
@@ -116,8 +114,7 @@ fn report(
     let paths = [Some((path, name, folder)), other.map(|other| (other, other_name, None))];
     for (path, name, folder) in paths.into_iter().flatten() {
         page = path.with_record(py, |engine, record| {
-            let mut fields = Computed(engine);
-            let source = Source::new(name, record).computed_by(&mut fields);
+            let source = Source::new(name, record).computed_by(engine);
             page.add(match folder {
                 Some(folder) => source.with_folder(&folder),
                 None => source,
@@ -126,22 +123,6 @@ fn report(
         })?;
     }
     Ok(Report { html: page.html(), notes: page.notes().to_vec() })
-}
-
-/// What computes the fields of a path of any updater.
-struct Computed<'a>(&'a mut dyn Engine);
-
-impl Fields for Computed<'_> {
-    fn pressure_and_gap_at(
-        &mut self,
-        state: &LoadingState,
-    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error> {
-        self.0.pressure_and_gap_at(state)
-    }
-
-    fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
-        self.0.certificate_at(state)
-    }
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

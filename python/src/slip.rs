@@ -16,9 +16,16 @@ use crate::compute::{cancellable, detached};
 use crate::errors::{Failure, Fallible};
 use crate::increments::Increments;
 use crate::materials::{self, Body};
-use crate::path::Sheared;
 use crate::results::result;
 use crate::warnings::warn;
+
+/// Fields under a tangential load.
+#[derive(Clone, Copy)]
+enum Sheared {
+    Traction,
+    Slip,
+    FrictionWork,
+}
 
 /// A joint under a constant load: what a tangential load does to it. Made by `shear`.
 ///
@@ -152,7 +159,12 @@ impl PartialSlip {
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
         let (preload, friction) = (self.load, self.friction);
         let field = self.increments.field(py, |engine, bed| {
-            engine.sheared(what, &slip::PartialSlip::new(bed, preload, friction)?, load)
+            let joint = slip::PartialSlip::new(bed, preload, friction)?;
+            match what {
+                Sheared::Traction => joint.traction(engine, load),
+                Sheared::Slip => joint.slip(engine, load),
+                Sheared::FrictionWork => joint.friction_work(engine, load),
+            }
         })?;
         rows(py, field)
     }
@@ -452,7 +464,7 @@ impl PartialSlip {
     ) -> Fallible<Bound<'py, PyArray2<i8>>> {
         let (preload, friction) = (self.load, self.friction);
         let zones = self.increments.field(py, |engine, bed| {
-            engine.slip_zones(&slip::PartialSlip::new(bed, preload, friction)?, tangential_load)
+            slip::PartialSlip::new(bed, preload, friction)?.zones(engine, tangential_load)
         })?;
         rows(
             py,

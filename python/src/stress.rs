@@ -64,7 +64,8 @@ fn stress(
     angle: f64,
 ) -> Fallible<Stress> {
     let below = of_path(py, &path, poissons_ratio, (friction, angle))?;
-    let pressure = path.at(py, state, |engine, state| engine.pressure_at(state))?;
+    let pressure =
+        path.at(py, state, |engine, state| engine.fields_at(state).map(|fields| fields.pressure))?;
     Ok(Stress { below, pressure })
 }
 
@@ -131,7 +132,7 @@ fn first_yield<'py>(
 ) -> Fallible<Option<Bound<'py, PyAny>>> {
     let below = of_path(py, &path, poissons_ratio, (friction, angle))?;
     let history = path.history_now(py).history;
-    let found = path.computed(py, |engine| engine.first_yield(&below, &history, yield_stress))?;
+    let found = path.computed(py, |engine| below.first_yield(engine, &history, yield_stress))?;
     let of = |found: asperity::stress::FirstYield| {
         result!(py, "FirstYield", {
             state: State::new(found.state),

@@ -34,7 +34,6 @@
 //!
 //! ```
 //! use asperity::bed::{Bed, Superposition};
-//! use asperity::loading::History;
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 //!
 //! # fn main() -> Result<(), asperity::Error> {
@@ -42,7 +41,7 @@
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 //!     .max_load(500.0)
 //!     .build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let bed = Bed::new(&history)?;
 //!
 //! // The increments up to 200 N in full, and those from there to 500 N by half.
@@ -167,7 +166,7 @@ impl<'a> Bed<'a> {
     /// # Errors
     ///
     /// Those of [`Self::new`].
-    pub fn of(record: &'a LoadingRecord) -> Result<Self, Error> {
+    pub fn of_record(record: &'a LoadingRecord) -> Result<Self, Error> {
         Self::new(record.history())
     }
 
@@ -316,7 +315,7 @@ impl<'a> Bed<'a> {
         }
     }
 
-    /// The state of the path at a load, with which [`LoadingSolver::pressure_at`](crate::LoadingSolver::pressure_at) and its like
+    /// The state of the path at a load, with which [`LoadingPath::fields_at`](crate::LoadingPath::fields_at) and its like
     /// compute fields.
     ///
     /// # Errors

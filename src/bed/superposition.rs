@@ -3,8 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::{Bed, BedState};
-use crate::updater::LinearUpdater;
-use crate::{Error, LoadingSolver, LoadingState};
+use crate::{Error, LoadingPath, LoadingState};
 
 /// A state ∫ φ(s) dp(s) with a weight φ that is constant in pieces. See the [module](super).
 ///
@@ -113,12 +112,8 @@ impl Superposition {
     ///
     /// # Errors
     ///
-    /// [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore), and those of [`LoadingSolver::pressure_at`].
-    pub fn pressure<U: LinearUpdater>(
-        &self,
-        bed: &Bed,
-        path: &mut LoadingSolver<U>,
-    ) -> Result<DMatrix<f64>, Error> {
+    /// [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore), and those of [`LoadingPath::fields_at`].
+    pub fn pressure(&self, bed: &Bed, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         self.sum(bed, path, |path, state| path.pressure_at(state))
     }
 
@@ -127,12 +122,8 @@ impl Superposition {
     /// # Errors
     ///
     /// Those of [`Self::pressure`].
-    pub fn displacement<U: LinearUpdater>(
-        &self,
-        bed: &Bed,
-        path: &mut LoadingSolver<U>,
-    ) -> Result<DMatrix<f64>, Error> {
-        self.sum(bed, path, |path, state| path.displacement_at(state))
+    pub fn displacement(&self, bed: &Bed, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
+        self.sum(bed, path, |path, state| Ok(path.fields_at(state)?.displacement))
     }
 
     /// By how much gaps change, `∫ φ dg` \[m\]; with the initial gap this is what is left of it.
@@ -140,12 +131,8 @@ impl Superposition {
     /// # Errors
     ///
     /// Those of [`Self::pressure`].
-    pub fn gap_change<U: LinearUpdater>(
-        &self,
-        bed: &Bed,
-        path: &mut LoadingSolver<U>,
-    ) -> Result<DMatrix<f64>, Error> {
-        let mut sum = self.sum(bed, path, |path, state| path.gap_at(state))?;
+    pub fn gap_change(&self, bed: &Bed, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
+        let mut sum = self.sum(bed, path, |path, state| Ok(path.fields_at(state)?.gap))?;
         // At first touch the gap is the initial one, where pressure and displacement are none.
         if let Some(first) = self.pieces.first() {
             for (value, initial) in sum.iter_mut().zip(path.problem().initial_gap()) {
@@ -156,11 +143,11 @@ impl Superposition {
     }
 
     /// Σ φ (field(end) − field(start)) for a field that is none at first touch.
-    fn sum<U: LinearUpdater>(
+    fn sum(
         &self,
         bed: &Bed,
-        path: &mut LoadingSolver<U>,
-        field: impl Fn(&mut LoadingSolver<U>, &LoadingState) -> Result<DMatrix<f64>, Error>,
+        path: &mut LoadingPath,
+        field: impl Fn(&mut LoadingPath, &LoadingState) -> Result<DMatrix<f64>, Error>,
     ) -> Result<DMatrix<f64>, Error> {
         let (nx, ny) = path.grid().shape();
         let mut sum = DMatrix::zeros(nx, ny);

@@ -76,7 +76,7 @@ fn scalars_are_those_of_the_fields() -> Result<(), Error> {
     for kernel in kernels {
         // To full contact and beyond it.
         let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(3), kernel).build()?;
-        let history: History = path.by_ref().collect::<Result<_, _>>()?;
+        let history = path.run()?;
         let bed = Bed::new(&history)?;
         let top = bed.last_load();
         assert_eq!(bed.greatest_load(), f64::INFINITY);
@@ -113,7 +113,7 @@ fn a_bed_reads_what_its_history_reads() -> Result<(), Error> {
     let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(2), &kernel)
         .max_area_fraction(0.4)
         .build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     let bed = Bed::new(&history)?;
     for k in 0..=50 {
         let load = bed.last_load() * f64::from(k) / 50.0;

@@ -5,12 +5,14 @@
 //! and the same scales.
 
 mod certificate;
+mod fields;
 mod sequence;
 mod state;
 mod target;
 
 pub use certificate::Certificate;
 pub(crate) use certificate::{Conditions, ErrorLength};
+pub use fields::ContactFields;
 pub use sequence::ContactSequence;
 pub use state::{ContactState, PlasticState};
 pub use target::ContactTarget;

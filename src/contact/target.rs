@@ -1,12 +1,14 @@
-//! The state of contact to find: by load, approach, mean gap or area.
+//! The state of contact to find: by load, mean pressure, approach, mean gap or area.
 
-/// The state of contact to find: by load, approach, mean gap or area.
+/// The state of contact to find: by load, mean pressure, approach, mean gap or area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ContactTarget {
     /// This load \[N\].
     Load(f64),
+    /// This load over the nominal area \[Pa\]: a path takes it for the load that it is.
+    MeanPressure(f64),
     /// This approach \[m\] from first touch.
     Approach(f64),
     /// As many nodes in contact as fit into this fraction (above 0, at most 1) of the nominal area:

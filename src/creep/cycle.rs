@@ -18,7 +18,7 @@ pub struct Cycle {
     /// Amplitude of the approach, half of its range \[m\].
     pub approach_amplitude: f64,
     /// Energy lost in the last cycle, `∮ (W − W̄) dδ` \[J\].
-    pub dissipated: f64,
+    pub dissipation: f64,
     /// Amplitude of the load over that of the approach \[N/m\].
     pub stiffness: f64,
     /// Energy lost over π times both amplitudes: the tangent of the phase as far as the contact is linear.
@@ -165,13 +165,13 @@ impl ViscoelasticBed<'_> {
                 let load = 0.5 * (pair[0].1 + pair[1].1) - mean_load;
                 load * (pair[1].0 - pair[0].0)
             });
-            let dissipated: f64 = lost.sum();
+            let dissipation: f64 = lost.sum();
             let approaches = path.iter().map(|point| point.0);
             let (low, high) = approaches
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             let approach_amplitude = 0.5 * (high - low);
             let scale = amplitude * approach_amplitude;
-            let distance = (energy.distance(dissipated, ahead.slowest) / scale)
+            let distance = (energy.distance(dissipation, ahead.slowest) / scale)
                 .max(amplitudes.distance(approach_amplitude, ahead.slowest) / approach_amplitude);
             if distance <= tolerance {
                 return Ok(Cycle {
@@ -179,9 +179,9 @@ impl ViscoelasticBed<'_> {
                     mean_load,
                     amplitude,
                     approach_amplitude,
-                    dissipated,
+                    dissipation,
                     stiffness: amplitude / approach_amplitude,
-                    loss_factor: dissipated / (std::f64::consts::PI * scale),
+                    loss_factor: dissipation / (std::f64::consts::PI * scale),
                     path,
                     cycles,
                     distance,

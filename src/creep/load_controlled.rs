@@ -1,8 +1,8 @@
 //! Contact under a load that is given over time, as long as the effective load grows.
 
-use super::corners::Corners;
 use super::growth::{Growth, Kernel};
 use super::hereditary::{Hereditary, Place};
+use super::piecewise_linear::PiecewiseLinear;
 use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
 use crate::bed::{Bed, Superposition};
@@ -22,8 +22,7 @@ use crate::{CreepError, Error};
 ///
 /// ```
 /// use asperity::bed::Bed;
-/// use asperity::creep::{Corners, Creep, Prony};
-/// use asperity::loading::History;
+/// use asperity::creep::{PiecewiseLinear, Creep, Prony};
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
@@ -31,11 +30,11 @@ use crate::{CreepError, Error};
 /// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 ///     .max_load(500.0)
 ///     .build()?;
-/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// let history = path.run()?;
 /// let bed = Bed::new(&history)?;
 ///
 /// // 200 N at once, on bodies of which half of the modulus relaxes in a second.
-/// let creep = Creep::new(&bed, &Prony::shares(&[(1.0, 0.5)])?, &Corners::step(200.0)?)?;
+/// let creep = Creep::new(&bed, &Prony::shares(&[(1.0, 0.5)])?, &PiecewiseLinear::step(200.0)?)?;
 /// let (first, last) = (creep.at(0.0)?, creep.at(100.0)?);
 /// assert_eq!(first.effective_load, 200.0);
 /// assert!((last.effective_load - 400.0).abs() < 1e-9);
@@ -72,7 +71,7 @@ impl<'a> Creep<'a> {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a negative load; [`Error::NotHomogeneous`] for a path on layers of several materials.
-    pub fn new(bed: &'a Bed<'a>, prony: &Prony, load: &Corners) -> Result<Self, Error> {
+    pub fn new(bed: &'a Bed<'a>, prony: &Prony, load: &PiecewiseLinear) -> Result<Self, Error> {
         bed.history().layering().check(Theory::Creep)?;
         for &(_, load) in load.corners() {
             Error::require("load at a corner", load, load >= 0.0, "at least 0")?;
@@ -125,7 +124,7 @@ impl<'a> Creep<'a> {
     }
 
     /// The state of the elastic path whose contact, gap and approach those of a time are: for
-    /// [`gap_at`](crate::LoadingSolver::gap_at), [`contact_map_at`](crate::LoadingSolver::contact_map_at), and
+    /// [`fields_at`](crate::LoadingPath::fields_at), [`contact_map_at`](crate::LoadingPath::contact_map_at), and
     /// [`patches`](crate::patches). Its load is the effective one, and its pressure not that of the time.
     ///
     /// # Errors

@@ -8,7 +8,7 @@
 //! | question | answer |
 //! |---|---|
 //! | the modulus | [`Prony`]: relaxation or creep, one body or two |
-//! | load or approach over time | [`Corners`] |
+//! | load or approach over time | [`PiecewiseLinear`] |
 //! | contact under a load, as long as it grows | [`Creep`]: in closed form at any time, and the time of every event |
 //! | contact at an approach that does not fall: stress relaxation | [`Relaxation`] |
 //! | one unloading | [`Unloading`]: one root |
@@ -34,13 +34,13 @@
 //! creep function of 1/E\* as a whole); small strains at one temperature; no friction, adhesion or inertia. Only ratios to the E\* of the
 //! path matter: see [`Prony::relative_to`]. Paths on which nodes leave or yield are refused ([`BedError`](crate::BedError)).
 
-mod corners;
-mod course;
+mod control_history;
 mod cycle;
 mod exponential_sum;
 mod growth;
 mod hereditary;
 mod load_controlled;
+mod piecewise_linear;
 mod prony;
 mod relaxation;
 mod secular;
@@ -49,10 +49,10 @@ mod unloading;
 mod viscoelastic_bed;
 mod weights;
 
-pub use corners::Corners;
-pub use course::{Course, Steps};
+pub use control_history::{ControlHistory, Steps};
 pub use cycle::{Cycle, CycleSettings};
 pub use load_controlled::{Creep, Recession};
+pub use piecewise_linear::PiecewiseLinear;
 pub use prony::{Prony, PronyTerm};
 pub use relaxation::Relaxation;
 pub use state::CreepState;

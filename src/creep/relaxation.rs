@@ -2,16 +2,15 @@
 
 use nalgebra::DMatrix;
 
-use super::corners::Corners;
 use super::growth::{Growth, Kernel};
 use super::hereditary::Hereditary;
+use super::piecewise_linear::PiecewiseLinear;
 use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
 use crate::bed::{Bed, Superposition};
 use crate::kernel::Theory;
 use crate::loading::LoadingState;
-use crate::updater::LinearUpdater;
-use crate::{BedError, CreepError, Error, LoadingSolver};
+use crate::{BedError, CreepError, Error, LoadingPath};
 
 /// The contact of viscoelastic bodies at a history of approach: stress relaxation.
 ///
@@ -20,7 +19,7 @@ use crate::{BedError, CreepError, Error, LoadingSolver};
 ///
 /// ```
 /// use asperity::bed::Bed;
-/// use asperity::creep::{Corners, Prony, Relaxation};
+/// use asperity::creep::{PiecewiseLinear, Prony, Relaxation};
 /// use asperity::loading::History;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
@@ -31,7 +30,7 @@ use crate::{BedError, CreepError, Error, LoadingSolver};
 /// let bed = Bed::new(&history)?;
 /// let rubber = Prony::shares(&[(1.0, 0.5)])?;
 /// let approach = bed.at_load(200.0)?.approach;
-/// let held = Relaxation::new(&bed, &rubber, &Corners::step(approach)?)?;
+/// let held = Relaxation::new(&bed, &rubber, &PiecewiseLinear::step(approach)?)?;
 /// assert!((held.at(0.0)?.load - 200.0).abs() < 1e-10);
 /// assert!((held.at(100.0)?.load - 100.0).abs() < 1e-10);
 /// # Ok(())
@@ -40,7 +39,7 @@ use crate::{BedError, CreepError, Error, LoadingSolver};
 #[derive(Debug, Clone)]
 pub struct Relaxation<'a> {
     bed: &'a Bed<'a>,
-    approach: Corners,
+    approach: PiecewiseLinear,
     kernel: Kernel,
     /// The elastic load as the effective one.
     growth: Growth<'a>,
@@ -59,7 +58,7 @@ impl<'a> Relaxation<'a> {
     ///
     /// [`BedError`] if the elastic path has no state at an approach, other than that it ends before; [`Error::NotHomogeneous`] for a path
     /// on layers of several materials.
-    pub fn new(bed: &'a Bed<'a>, prony: &Prony, approach: &Corners) -> Result<Self, Error> {
+    pub fn new(bed: &'a Bed<'a>, prony: &Prony, approach: &PiecewiseLinear) -> Result<Self, Error> {
         bed.history().layering().check(Theory::Creep)?;
         let Elastic { knots, recedes, ends } = Elastic::along(bed, approach)?;
         let elastic = Hereditary::creep(&Prony::elastic(1.0)?, &knots);
@@ -151,14 +150,10 @@ impl<'a> Relaxation<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`at`](Self::at) and of [`LoadingSolver::gap_at`].
-    pub fn gap<U: LinearUpdater>(
-        &self,
-        time: f64,
-        path: &mut LoadingSolver<U>,
-    ) -> Result<DMatrix<f64>, Error> {
+    /// Those of [`at`](Self::at) and of [`LoadingPath::fields_at`].
+    pub fn gap(&self, time: f64, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         let apart = (-self.at(time)?.approach).max(0.0);
-        Ok(path.gap_at(&self.path_state(time)?)?.map(|gap| gap + apart))
+        Ok(path.fields_at(&self.path_state(time)?)?.gap.map(|gap| gap + apart))
     }
 }
 
@@ -171,7 +166,7 @@ struct Elastic {
 }
 
 impl Elastic {
-    fn along(bed: &Bed, approach: &Corners) -> Result<Self, Error> {
+    fn along(bed: &Bed, approach: &PiecewiseLinear) -> Result<Self, Error> {
         let (loads, approaches) = (bed.loads(), bed.approaches());
         let mut knots: Vec<(f64, f64)> = Vec::new();
         let mut before: Option<(f64, f64)> = None;

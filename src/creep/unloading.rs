@@ -21,7 +21,7 @@ use crate::{CreepError, Error};
 ///
 /// ```
 /// use asperity::bed::Bed;
-/// use asperity::creep::{Corners, Creep, Prony, Unloading};
+/// use asperity::creep::{PiecewiseLinear, Creep, Prony, Unloading};
 /// use asperity::loading::History;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
@@ -30,7 +30,7 @@ use crate::{CreepError, Error};
 /// let path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
 /// let history: History = path.collect::<Result<_, _>>()?;
 /// let bed = Bed::new(&history)?;
-/// let load = Corners::ramp(200.0, 1.0)?.to(0.0, 1.0)?;
+/// let load = PiecewiseLinear::ramp(200.0, 1.0)?.to(0.0, 1.0)?;
 /// let creep = Creep::new(&bed, &Prony::shares(&[(1.0, 0.5)])?, &load)?;
 /// let unloading = Unloading::new(&creep)?;
 /// let state = unloading.at(1.8)?;
@@ -111,7 +111,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
         Ok(UnloadingState { time, load: self.creep.load(time), contact_time, contact })
     }
 
-    /// The state of the path that has this contact: for [`contact_map_at`](crate::LoadingSolver::contact_map_at).
+    /// The state of the path that has this contact: for [`contact_map_at`](crate::LoadingPath::contact_map_at).
     ///
     /// # Errors
     ///

@@ -7,8 +7,7 @@ use super::state::{CreepState, area_from, in_pieces};
 use super::weights::Weights;
 use crate::bed::{Bed, Superposition};
 use crate::kernel::Theory;
-use crate::updater::LinearUpdater;
-use crate::{CreepError, Error, LoadingSolver};
+use crate::{CreepError, Error, LoadingPath};
 
 /// What a step of a bed leads to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -234,11 +233,7 @@ impl<'a> ViscoelasticBed<'a> {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] without pieces, and those of [`Superposition::displacement`].
-    pub fn gap<U: LinearUpdater>(
-        &self,
-        pieces: usize,
-        path: &mut LoadingSolver<U>,
-    ) -> Result<DMatrix<f64>, Error> {
+    pub fn gap(&self, pieces: usize, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         let mut gap = self.compression(pieces)?.displacement(self.bed, path)?;
         for (value, initial) in gap.iter_mut().zip(path.problem().initial_gap()) {
             *value = (initial + *value - self.state.approach).max(0.0);

@@ -91,6 +91,6 @@ mod tangent;
 mod tuning;
 
 pub use builder::FixedLoadBuilder;
-pub use solution::{FixedLoadSolution, Plastic, SolverEffort};
+pub use solution::{FixedLoadSolution, SolverEffort};
 pub use solver::FixedLoadSolver;
 pub use sweep::LoadSweep;

@@ -20,6 +20,11 @@ pub(super) fn solve_target(
 ) -> Result<FixedLoadSolution, Error> {
     match target {
         ContactTarget::Load(load) => stepper.step_to_load(load),
+        ContactTarget::MeanPressure(mean_pressure) => {
+            let mean_pressure = Error::require_positive("mean pressure", mean_pressure)?;
+            let area = stepper.finest().grid.nominal_area();
+            stepper.step_to_load(mean_pressure * area)
+        }
         ContactTarget::Approach(approach) if stepper.finds_approach() => {
             let target = Error::require_positive("approach", approach)?;
             let unloaded = stepper.finest().mean_initial_gap();
@@ -156,7 +161,7 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
             x = x.min(greatest.ln() - NARROWEST.sqrt());
         }
         let solution = stepper.step_to_load(x.exp())?;
-        let state = &solution.state;
+        let state = &solution.contact;
         let carrying = solution.carrying_nodes();
         if sought.is_found(state, carrying, stepper.gap_error(state)) {
             return Ok(solution);
@@ -164,7 +169,7 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         let beyond = sought.beyond(state, carrying);
         if beyond > 0.0
             && matches!(sought, Sought::Nodes(_))
-            && stepper.finest().touch_first(&solution.contact_map)
+            && stepper.finest().touch_first(&solution.fields.contact_map)
         {
             return Ok(solution);
         }
@@ -262,11 +267,12 @@ mod tests {
                 let solution = solver.solve_target(ContactTarget::AreaFraction(fraction))?;
                 let level = solver.clone().into_finest();
                 let typical = Sought::Nodes(nodes).typical_load(&level);
-                let off = (typical / solution.state.load).ln();
+                let off = (typical / solution.contact.load).ln();
                 assert!(off.abs() < LONGEST, "{nodes} nodes: a factor of e^{off}");
-                let sought = Sought::mean_gap(solution.state.mean_gap, &level)?;
+                let sought = Sought::mean_gap(solution.contact.mean_gap, &level)?;
                 assert!(
-                    (sought.typical_load(&level) / solution.state.load).ln().abs() < 2.0 * LONGEST
+                    (sought.typical_load(&level) / solution.contact.load).ln().abs()
+                        < 2.0 * LONGEST
                 );
             }
         }
@@ -283,9 +289,9 @@ mod tests {
         let builder = FixedLoadSolver::builder(&surface, &kernel);
         let mut solver = builder.tolerance(1e-11).stiffness(true).build()?;
         let load = 0.01;
-        let state = solver.solve(load)?.state;
+        let state = solver.solve(load)?.contact;
         // Of the same contact, on which mean gap and load go in proportion.
-        let near = solver.solve(load * (1.0 + 1e-6))?.state;
+        let near = solver.solve(load * (1.0 + 1e-6))?.contact;
         assert_eq!(near.contact_nodes, state.contact_nodes);
         let level = solver.into_finest();
         let sought = Sought::mean_gap(0.5 * state.mean_gap, &level)?;

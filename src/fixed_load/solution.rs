@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::level::Level;
-use crate::contact::{Certificate, Conditions, ContactState, PlasticState};
+use crate::contact::{Certificate, Conditions, ContactFields, ContactState, PlasticState};
 use crate::krylov::{dot, sum, sum_over};
 use crate::{Error, Grid, HeightMap};
 
@@ -16,17 +16,10 @@ use crate::{Error, Grid, HeightMap};
 )]
 #[non_exhaustive]
 pub struct FixedLoadSolution {
-    /// Scalars of the state.
-    pub state: ContactState,
-    /// Pressure `p ≥ 0` \[Pa\], nx × ny.
-    pub pressure: DMatrix<f64>,
-    /// Gap `g + u − δ` \[m\], in contact zero to within the tolerance.
-    pub gap: DMatrix<f64>,
-    /// Displacement of the half-space `u = C p` \[m\], positive into it; about its mean if the
-    /// half-space is periodic and its mean displacement arbitrary.
-    pub displacement: DMatrix<f64>,
-    /// Which nodes are in contact: those with pressure or a closed gap.
-    pub contact_map: DMatrix<bool>,
+    /// Scalars of the contact.
+    pub contact: ContactState,
+    /// Its fields; in contact are nodes with pressure or a closed gap.
+    pub fields: ContactFields,
     /// Pressure per unit of load \[1/m²\], the exact derivative on further loading of the nodes in
     /// contact, `dp/dW = y₂ / (ΔA Σ y₂)` with `y₂ = C_II⁻¹ e` on the contact set I. Empty if stiffnesses
     /// were not asked for.
@@ -36,57 +29,6 @@ pub struct FixedLoadSolution {
     pub certificate: Certificate,
     /// The effort.
     pub effort: SolverEffort,
-    /// Nodes that have yielded, with a [hardness](super::FixedLoadBuilder::hardness); `None` without one.
-    pub plastic: Option<Plastic>,
-}
-
-/// Nodes whose pressure is their hardness, and what stays of them in the surface.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Plastic {
-    /// Which nodes have yielded, nx × ny; all of them are in contact.
-    pub yielded_map: DMatrix<bool>,
-    /// Plastic depth \[m\], nx × ny: the elastic overlap of yielded nodes, 0 elsewhere. Less it, the surface presses into the
-    /// half-space elastically on unloading and reloading, up to this state.
-    pub depth: DMatrix<f64>,
-    /// Area of yielded nodes \[m²\].
-    pub area: f64,
-    /// Sum of the plastic depth over the area \[m³\].
-    pub volume: f64,
-    /// Energy that is lost, H times the volume where H is the same everywhere \[J\]. The energy of the state is elastic.
-    pub work: f64,
-}
-
-impl Plastic {
-    /// Number of nodes that have yielded.
-    #[must_use]
-    pub fn yielded_nodes(&self) -> usize {
-        self.yielded_map.iter().filter(|has_yielded| **has_yielded).count()
-    }
-
-    /// The scalars; rates are those of a tangent.
-    fn state(&self, grid: &Grid) -> PlasticState {
-        PlasticState {
-            yielded_nodes: self.yielded_nodes(),
-            yielded_area_fraction: self.yielded_nodes() as f64 / grid.nodes() as f64,
-            volume: self.volume,
-            work: self.work,
-            ..PlasticState::default()
-        }
-    }
-
-    fn new(grid: &Grid, pressure: &[f64], yielded: &[bool], depth: Vec<f64>) -> Self {
-        let (nx, ny) = grid.shape();
-        let cell_area = grid.cell_area();
-        let count = yielded.iter().filter(|has_yielded| **has_yielded).count();
-        Self {
-            yielded_map: DMatrix::from_column_slice(nx, ny, yielded),
-            area: count as f64 * cell_area,
-            volume: cell_area * sum(&depth),
-            work: cell_area * dot(pressure, &depth),
-            depth: DMatrix::from_vec(nx, ny, depth),
-        }
-    }
 }
 
 /// The effort of a solution.
@@ -105,16 +47,10 @@ pub struct SolverEffort {
 }
 
 impl FixedLoadSolution {
-    /// Greatest pressure \[Pa\].
-    #[must_use]
-    pub fn max_pressure(&self) -> f64 {
-        self.pressure.max()
-    }
-
     /// Number of nodes with pressure. It is less than that of nodes in contact where some touch or leave
     /// at this very load, to within rounding, which then decides how many of them are counted.
     pub(super) fn carrying_nodes(&self) -> usize {
-        self.pressure.iter().filter(|p| **p > 0.0).count()
+        self.fields.pressure.iter().filter(|p| **p > 0.0).count()
     }
 
     /// `Ok` if everything is finite; the interfacial stiffness of full contact need not be.
@@ -124,8 +60,8 @@ impl FixedLoadSolution {
     /// [`Error::OutOfRange`] and [`Error::FieldNotFinite`] otherwise.
     pub(super) fn check_finite(&self, grid: &Grid) -> Result<(), Error> {
         let fields = [
-            ("pressure", &self.pressure),
-            ("displacement", &self.displacement),
+            ("pressure", &self.fields.pressure),
+            ("displacement", &self.fields.displacement),
             ("pressure rate", &self.pressure_rate),
         ];
         for (field, values) in fields {
@@ -134,12 +70,12 @@ impl FixedLoadSolution {
                 grid.check_finite(field, values)?;
             }
         }
-        if self.state.is_finite() {
+        if self.contact.is_finite() {
             return Ok(());
         }
         Err(Error::OutOfRange {
             quantity: "approach of a solution",
-            value: self.state.approach,
+            value: self.contact.approach,
             expected: "finite, as all of its state",
         })
     }
@@ -160,16 +96,17 @@ impl FixedLoadSolution {
         let (approach, total_gap) = (level.iterate.approach, &level.iterate.total_gap);
         let pressure = DMatrix::from_column_slice(nx, ny, &level.iterate.pressure);
         let mut gap = DMatrix::from_iterator(nx, ny, total_gap.iter().map(|c| c - approach));
-        let plastic = yielded.map(|(_, yielded)| {
-            let mut depth = vec![0.0; nodes];
-            for ((depth, gap), has_yielded) in depth.iter_mut().zip(&mut gap).zip(yielded) {
+        let mut yielded_map = DMatrix::from_element(nx, ny, false);
+        let mut plastic_depth = DMatrix::zeros(nx, ny);
+        if let Some((_, yielded)) = yielded {
+            yielded_map.as_mut_slice().copy_from_slice(yielded);
+            for ((depth, gap), has_yielded) in plastic_depth.iter_mut().zip(&mut gap).zip(yielded) {
                 if *has_yielded {
                     // What rounds is none.
                     (*depth, *gap) = ((-*gap).max(0.0), 0.0);
                 }
             }
-            Plastic::new(&level.grid, &level.iterate.pressure, yielded, depth)
-        });
+        }
         let displacements = total_gap.iter().zip(&level.gap).map(|(c, g)| c - g);
         let displacement = DMatrix::from_iterator(nx, ny, displacements);
         let contact_map = pressure.zip_map(&gap, |p, gap| p > 0.0 || gap <= 0.0);
@@ -180,7 +117,18 @@ impl FixedLoadSolution {
         // Gaps in contact are closed to within the tolerance: left out, full contact is exact.
         let open = |node: usize| if in_contact[node] { 0.0 } else { gaps[node] };
         let load = load.unwrap_or(cell_area * sum(p));
-        let state = ContactState {
+        let plastic = yielded.map(|(_, yielded)| {
+            let (count, depth) =
+                (yielded.iter().filter(|it| **it).count(), plastic_depth.as_slice());
+            PlasticState {
+                yielded_nodes: count,
+                yielded_area_fraction: count as f64 / nodes as f64,
+                volume: cell_area * sum(depth),
+                work: cell_area * dot(p, depth),
+                ..PlasticState::default()
+            }
+        });
+        let contact = ContactState {
             contact_nodes,
             approach,
             load,
@@ -190,7 +138,7 @@ impl FixedLoadSolution {
             contact_stiffness: None,
             interfacial_stiffness: None,
             energy: 0.5 * cell_area * dot(p, displacement.as_slice()),
-            plastic: plastic.as_ref().map(|plastic| plastic.state(&level.grid)),
+            plastic,
         };
         let conditions = Conditions::new(load / cell_area, approach, level.scale);
         let certificate =
@@ -202,15 +150,18 @@ impl FixedLoadSolution {
             None => certificate,
         };
         Self {
-            state,
-            pressure,
-            gap,
-            displacement,
-            contact_map,
+            contact,
+            fields: ContactFields {
+                pressure,
+                gap,
+                displacement,
+                contact_map,
+                yielded_map,
+                plastic_depth,
+            },
             pressure_rate: DMatrix::zeros(0, 0),
             certificate,
             effort,
-            plastic,
         }
     }
 
@@ -221,23 +172,17 @@ impl FixedLoadSolution {
     ///
     /// [`Error::GridMismatch`] for a surface of another grid.
     pub fn residual_surface(&self, surface: &HeightMap) -> Result<HeightMap, Error> {
-        let Some(plastic) = &self.plastic else {
-            return Ok(surface.clone());
-        };
-        let heights = surface.matrix();
-        if heights.shape() != plastic.depth.shape() {
-            return Err(Error::GridMismatch {
-                expected: plastic.depth.shape(),
-                found: heights.shape(),
-            });
+        let (heights, depth) = (surface.matrix(), &self.fields.plastic_depth);
+        if heights.shape() != depth.shape() {
+            return Err(Error::GridMismatch { expected: depth.shape(), found: heights.shape() });
         }
-        Ok(HeightMap::new(heights - &plastic.depth)?)
+        Ok(HeightMap::new(heights - depth)?)
     }
 
     /// Whether a node is in contact and has not yielded.
     pub(super) fn is_elastic(&self, node: usize) -> bool {
-        let has_yielded = self.plastic.as_ref().is_some_and(|p| p.yielded_map.as_slice()[node]);
-        self.contact_map.as_slice()[node] && !has_yielded
+        let ContactFields { contact_map, yielded_map, .. } = &self.fields;
+        contact_map.as_slice()[node] && !yielded_map.as_slice()[node]
     }
 }
 
@@ -247,56 +192,44 @@ mod parts {
     use nalgebra::{DMatrix, Scalar};
     use serde::{Deserialize, Serialize};
 
-    use super::{FixedLoadSolution, Plastic, SolverEffort};
+    use super::{FixedLoadSolution, SolverEffort};
     use crate::Error;
-    use crate::contact::{Certificate, ContactState};
+    use crate::contact::{Certificate, ContactFields, ContactState};
 
     /// The parts of a solution; fields have x fast.
     #[derive(Debug, Clone, Serialize, Deserialize)]
     pub(super) struct Parts {
         /// Nodes along x and y.
         shape: (usize, usize),
-        state: ContactState,
+        contact: ContactState,
         pressure: Vec<f64>,
         gap: Vec<f64>,
         displacement: Vec<f64>,
         contact_map: Vec<bool>,
+        yielded_map: Vec<bool>,
+        plastic_depth: Vec<f64>,
         /// Empty if stiffnesses were not asked for.
         pressure_rate: Vec<f64>,
         certificate: Certificate,
         effort: SolverEffort,
-        /// Of a solution with a hardness.
-        #[serde(default)]
-        plastic: Option<PlasticParts>,
-    }
-
-    /// The parts of what has yielded.
-    #[derive(Debug, Clone, Serialize, Deserialize)]
-    struct PlasticParts {
-        yielded_map: Vec<bool>,
-        depth: Vec<f64>,
-        area: f64,
-        volume: f64,
-        work: f64,
     }
 
     impl From<FixedLoadSolution> for Parts {
         fn from(solution: FixedLoadSolution) -> Self {
+            let FixedLoadSolution { contact, fields, pressure_rate, certificate, effort } =
+                solution;
             Self {
-                shape: solution.pressure.shape(),
-                state: solution.state,
-                pressure: solution.pressure.data.into(),
-                gap: solution.gap.data.into(),
-                displacement: solution.displacement.data.into(),
-                contact_map: solution.contact_map.data.into(),
-                pressure_rate: solution.pressure_rate.data.into(),
-                certificate: solution.certificate,
-                effort: solution.effort,
-                plastic: solution.plastic.map(|plastic| {
-                    let Plastic { yielded_map, depth, area, volume, work } = plastic;
-                    let (yielded_map, depth) = (yielded_map.data.into(), depth.data.into());
-                    PlasticParts { yielded_map, depth, area, volume, work }
-                }),
+                shape: fields.pressure.shape(),
+                contact,
+                pressure: fields.pressure.data.into(),
+                gap: fields.gap.data.into(),
+                displacement: fields.displacement.data.into(),
+                contact_map: fields.contact_map.data.into(),
+                yielded_map: fields.yielded_map.data.into(),
+                plastic_depth: fields.plastic_depth.data.into(),
+                pressure_rate: pressure_rate.data.into(),
+                certificate,
+                effort,
             }
         }
     }
@@ -309,33 +242,23 @@ mod parts {
             if nx == 0 || ny == 0 {
                 return Err(crate::SurfaceError::EmptyGrid { nx, ny }.into());
             }
-            let mut state = parts.state;
+            let mut contact = parts.contact;
             let pressure_rate = if parts.pressure_rate.is_empty() {
                 DMatrix::zeros(0, 0)
             } else {
-                state.restore_infinity();
+                contact.restore_infinity();
                 matrix(parts.shape, parts.pressure_rate)?
             };
-            Ok(Self {
-                state,
+            let fields = ContactFields {
                 pressure: matrix(parts.shape, parts.pressure)?,
                 gap: matrix(parts.shape, parts.gap)?,
                 displacement: matrix(parts.shape, parts.displacement)?,
                 contact_map: matrix(parts.shape, parts.contact_map)?,
-                pressure_rate,
-                certificate: parts.certificate,
-                effort: parts.effort,
-                plastic: match parts.plastic {
-                    None => None,
-                    Some(plastic) => Some(Plastic {
-                        yielded_map: matrix(parts.shape, plastic.yielded_map)?,
-                        depth: matrix(parts.shape, plastic.depth)?,
-                        area: plastic.area,
-                        volume: plastic.volume,
-                        work: plastic.work,
-                    }),
-                },
-            })
+                yielded_map: matrix(parts.shape, parts.yielded_map)?,
+                plastic_depth: matrix(parts.shape, parts.plastic_depth)?,
+            };
+            let Parts { certificate, effort, .. } = parts;
+            Ok(Self { contact, fields, pressure_rate, certificate, effort })
         }
     }
 

@@ -133,7 +133,7 @@ impl FixedLoadSolver {
     /// of it is in contact, [`Error::NoConvergence`], [`Error::FactorizationFailed`] if the kernel is
     /// not positive definite, and [`Error::MemoryBudget`] if more nodes are in contact than fit.
     pub fn add_stiffness(&mut self, solution: &mut FixedLoadSolution) -> Result<(), Error> {
-        self.grid().check_shape(solution.contact_map.shape())?;
+        self.grid().check_shape(solution.fields.contact_map.shape())?;
         self.hierarchy.take_convolutions();
         let finest = &mut self.hierarchy.finest;
         Tangent::default().complete(finest, &self.settings, solution)
@@ -150,7 +150,7 @@ impl FixedLoadSolver {
         &mut self,
         solution: &mut FixedLoadSolution,
     ) -> Result<(), Error> {
-        self.grid().check_shape(solution.contact_map.shape())?;
+        self.grid().check_shape(solution.fields.contact_map.shape())?;
         self.hierarchy.take_convolutions();
         let finest = &mut self.hierarchy.finest;
         Tangent::default().add_unloading(finest, &self.settings, solution)

@@ -55,14 +55,15 @@ impl<'a> Stepper<'a> {
     ) -> Result<Self, Error> {
         let finest = &mut hierarchy.finest;
         check(solution, &finest.grid)?;
-        let yielded = solution.plastic.as_ref().map(|plastic| plastic.yielded_map.as_slice());
+        let has_hardness = solution.contact.plastic.is_some();
+        let yielded = has_hardness.then(|| solution.fields.yielded_map.as_slice());
         if !matches_hardness(solution, yielded, hardness) {
             return Ok(Self::new(settings, hierarchy, hardness));
         }
         let iterate = &mut finest.iterate;
-        iterate.pressure.copy_from_slice(solution.pressure.as_slice());
-        iterate.approach = solution.state.approach;
-        let gaps = finest.gap.iter().zip(&solution.displacement);
+        iterate.pressure.copy_from_slice(solution.fields.pressure.as_slice());
+        iterate.approach = solution.contact.approach;
+        let gaps = finest.gap.iter().zip(&solution.fields.displacement);
         for (total_gap, (gap, displacement)) in iterate.total_gap.iter_mut().zip(gaps) {
             *total_gap = gap + displacement;
         }
@@ -70,7 +71,7 @@ impl<'a> Stepper<'a> {
         stepper.yielded = yielded.unwrap_or_default().to_vec();
         let tangent = Tangent::of(&mut stepper.hierarchy.finest, solution)?;
         stepper.continuation = Continuation::new(tangent);
-        stepper.last = Some(solution.state);
+        stepper.last = Some(solution.contact);
         Ok(stepper)
     }
 
@@ -305,12 +306,12 @@ impl<'a> Stepper<'a> {
         &mut self,
         solution: &FixedLoadSolution,
     ) -> Result<Vec<Plateau>, Error> {
-        let (Some(hardness), Some(plastic)) = (self.hardness, &solution.plastic) else {
+        let (Some(hardness), Some(_)) = (self.hardness, &solution.contact.plastic) else {
             return Ok(Vec::new());
         };
         let finest = &mut self.hierarchy.finest;
         let mut all = Vec::new();
-        for set in [&plastic.yielded_map, &solution.contact_map] {
+        for set in [&solution.fields.yielded_map, &solution.fields.contact_map] {
             all.extend(Plateau::of(hardness, finest, set.as_slice().to_vec())?);
         }
         Ok(all)
@@ -353,7 +354,7 @@ impl<'a> Stepper<'a> {
             tangent.complete(finest, self.settings, &mut solution)?;
         }
         solution.check_finite(&finest.grid)?;
-        self.last = Some(solution.state);
+        self.last = Some(solution.contact);
         Ok(solution)
     }
 }
@@ -367,18 +368,18 @@ fn matches_hardness(
     let (Some(yielded), Some(hardness)) = (yielded, hardness) else {
         return yielded.is_none() && hardness.is_none();
     };
-    let nodes = yielded.iter().zip(&solution.pressure).zip(hardness.values());
-    yielded.len() == solution.pressure.len()
+    let nodes = yielded.iter().zip(&solution.fields.pressure).zip(hardness.values());
+    yielded.len() == solution.fields.pressure.len()
         && nodes.into_iter().all(|((has_yielded, p), h)| !has_yielded || p == h)
 }
 
 /// `Ok` if this can be a solution on `grid`: its fields are public.
 fn check(solution: &FixedLoadSolution, grid: &Grid) -> Result<(), Error> {
-    for field in [&solution.pressure, &solution.displacement] {
+    for field in [&solution.fields.pressure, &solution.fields.displacement] {
         grid.check_shape(field.shape())?;
     }
     solution.check_finite(grid)?;
-    let state = &solution.state;
+    let state = &solution.contact;
     // The shape may be the same on a grid of other cells.
     if state.contact_area != state.contact_nodes as f64 * grid.cell_area() {
         return Err(Error::OutOfRange {

@@ -34,7 +34,7 @@ impl Tangent {
 
     /// That of a solution, which costs a convolution; unknown if it has no stiffnesses.
     pub(super) fn of(level: &mut Level, solution: &FixedLoadSolution) -> Result<Self, Error> {
-        let state = &solution.state;
+        let state = &solution.contact;
         let interfacial = match state.interfacial_stiffness {
             Some(interfacial) if !solution.pressure_rate.is_empty() => interfacial,
             _ => return Ok(Self::default()),
@@ -62,15 +62,15 @@ impl Tangent {
         settings: &Settings,
         solution: &mut FixedLoadSolution,
     ) -> Result<(), Error> {
-        let in_contact = solution.contact_map.as_slice();
+        let in_contact = solution.fields.contact_map.as_slice();
         require_contact(in_contact)?;
         level.choose_contact(|node, _, _| solution.is_elastic(node))?;
         if level.iterate.contact.len() == 0 {
             // All that is in contact yields: the load stays what it is.
             let (nx, ny) = level.grid.shape();
             solution.pressure_rate = DMatrix::zeros(nx, ny);
-            solution.state.contact_stiffness = level.gauge.is_none().then_some(0.0);
-            solution.state.interfacial_stiffness = Some(0.0);
+            solution.contact.contact_stiffness = level.gauge.is_none().then_some(0.0);
+            solution.contact.interfacial_stiffness = Some(0.0);
             return Ok(());
         }
         let solved = inside(|| level.in_gauge(|level| self.solve(level, settings)))?;
@@ -80,15 +80,15 @@ impl Tangent {
         let (nx, ny) = level.grid.shape();
         let rates = self.rate.iter().map(|rate| rate / stiffness);
         solution.pressure_rate = DMatrix::from_iterator(nx, ny, rates);
-        solution.state.contact_stiffness = match level.gauge {
+        solution.contact.contact_stiffness = match level.gauge {
             None => Some(stiffness),
             Some(_) => None,
         };
-        solution.state.interfacial_stiffness = Some(interfacial);
-        if let (Some(state), Some(plastic)) = (&mut solution.state.plastic, &solution.plastic) {
-            let yielded = plastic.yielded_map.as_slice();
+        solution.contact.interfacial_stiffness = Some(interfacial);
+        if let Some(state) = &mut solution.contact.plastic {
+            let yielded = solution.fields.yielded_map.as_slice();
             let sinks = |node: usize| if yielded[node] { 1.0 - displacement[node] } else { 0.0 };
-            let pressure = solution.pressure.as_slice();
+            let pressure = solution.fields.pressure.as_slice();
             state.volume_per_load = sum_over(nodes, sinks) / solved.unit_unit;
             state.work_per_load =
                 sum_over(nodes, |node| pressure[node] * sinks(node)) / solved.unit_unit;
@@ -109,9 +109,9 @@ impl Tangent {
         settings: &Settings,
         solution: &mut FixedLoadSolution,
     ) -> Result<(), Error> {
-        let in_contact = solution.contact_map.as_slice();
+        let in_contact = solution.fields.contact_map.as_slice();
         require_contact(in_contact)?;
-        let Some(plastic) = &mut solution.state.plastic else {
+        let Some(plastic) = &mut solution.contact.plastic else {
             return Ok(());
         };
         level.choose_contact(|node, _, _| in_contact[node])?;

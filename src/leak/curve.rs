@@ -5,8 +5,7 @@ use crate::contact::ContactSequence;
 use crate::loading::History;
 use crate::patches::{Connectivity, Percolation, contact_sequence};
 use crate::surface::Axis;
-use crate::updater::LinearUpdater;
-use crate::{ContactEvent, Error, LoadingSolver, LoadingState};
+use crate::{ContactEvent, Error, LoadingPath, LoadingState};
 
 /// The leak at one state of a path, without its fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,9 +63,9 @@ impl Seal {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of [`contact_sequence`] for states that are no path.
-    pub fn curve<U: LinearUpdater>(
+    pub fn curve(
         &self,
-        path: &mut LoadingSolver<U>,
+        path: &mut LoadingPath,
         history: &History,
         states: usize,
     ) -> Result<LeakCurve, Error> {
@@ -76,7 +75,7 @@ impl Seal {
         // Those that may leak: of states at one approach too, since each has its contact.
         let leaking = closing.unwrap_or(events.len());
         let mut points: Vec<(usize, LeakPoint)> = Vec::new();
-        let at = |place: usize, path: &mut LoadingSolver<U>| -> Result<LeakPoint, Error> {
+        let at = |place: usize, path: &mut LoadingPath| -> Result<LeakPoint, Error> {
             let state = events[place];
             Ok(LeakPoint::new(state, &self.leak_at(path, &state)?))
         };
@@ -99,9 +98,9 @@ impl Seal {
 }
 
 /// The place among the states of that at which the last channel along an axis closes.
-fn closing<U: LinearUpdater>(
+fn closing(
     states: &[LoadingState],
-    path: &LoadingSolver<U>,
+    path: &LoadingPath,
     along: Axis,
 ) -> Result<Option<usize>, Error> {
     let events = states.iter().map(|state| (state.event, state.node));

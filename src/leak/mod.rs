@@ -9,14 +9,13 @@
 //!
 //! ```
 //! use asperity::leak::Seal;
-//! use asperity::loading::History;
 //! use asperity::surface::Axis;
 //! use asperity::{ContactTarget, Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine};
 //!
 //! # fn main() -> Result<(), asperity::Error> {
 //! let half_space = PeriodicBoussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //!
 //! // Water under 10 bar, from x = 0 to the other end.
 //! let seal = Seal::new(1e-3, 1e6, Axis::X)?;

@@ -8,8 +8,7 @@ use super::mean_field::bruggeman;
 use super::network::{BEHIND, Beyond, LEFT, Network, Place, RIGHT};
 use crate::patches;
 use crate::surface::Axis;
-use crate::updater::LinearUpdater;
-use crate::{Boundary, Error, Grid, LoadingSolver, LoadingState};
+use crate::{Boundary, Error, Grid, LoadingPath, LoadingState};
 
 /// Nodes on each side of the critical constriction that count as its surroundings.
 const AROUND: usize = 4;
@@ -94,13 +93,9 @@ impl Seal {
     ///
     /// # Errors
     ///
-    /// Those of [`LoadingSolver::gap_at`] and of [`Self::leak`].
-    pub fn leak_at<U: LinearUpdater>(
-        &self,
-        path: &mut LoadingSolver<U>,
-        state: &LoadingState,
-    ) -> Result<Leak, Error> {
-        let gap = path.gap_at(state)?;
+    /// Those of [`LoadingPath::fields_at`] and of [`Self::leak`].
+    pub fn leak_at(&self, path: &mut LoadingPath, state: &LoadingState) -> Result<Leak, Error> {
+        let gap = path.fields_at(state)?.gap;
         let contact_map = path.contact_map_at(state)?;
         let on = (&path.grid(), path.problem().boundary());
         self.leak(&gap, &contact_map, on)

@@ -11,13 +11,14 @@ use super::exact::Exact;
 use super::gap_field::GapField;
 use super::history::History;
 use super::limits::Limits;
+use super::path::{LoadingPath, Procedure};
 use super::phase::Phase;
 use super::plastic::Plastic;
 use super::releases::Releases;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings, Memory};
 use super::scalars::PathScalars;
-use super::solver::{LoadingSolver, Procedure};
+use super::solver::LoadingSolver;
 use super::stepwise::Stepwise;
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
 use crate::hardness::Limit;
@@ -25,31 +26,34 @@ use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
 use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, memory};
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 #[must_use = "a builder does nothing until it is built"]
 pub struct LoadingBuilder<'a, U = Handover> {
+    pub(super) settings: Settings<'a>,
+    updater: U,
+}
+
+/// Everything but the updater.
+#[derive(Clone)]
+pub(super) struct Settings<'a> {
     surface: &'a dyn Surface,
     kernel: &'a dyn InfluenceKernel,
-    updater: U,
     rule: ContactRule,
     window_size: Option<usize>,
     max_nodes: Option<usize>,
     targets: Vec<ContactTarget>,
-    max_mean_pressure: Option<f64>,
     memory_budget: Option<usize>,
     hardness: Limit<'a>,
 }
 
-impl<U: fmt::Debug> fmt::Debug for LoadingBuilder<'_, U> {
+impl fmt::Debug for Settings<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("LoadingBuilder")
+        f.debug_struct("Settings")
             .field("grid", &self.kernel.grid())
-            .field("updater", &self.updater)
             .field("rule", &self.rule)
             .field("window_size", &self.window_size)
             .field("max_nodes", &self.max_nodes)
             .field("targets", &self.targets)
-            .field("max_mean_pressure", &self.max_mean_pressure)
             .field("memory_budget", &self.memory_budget)
             .field("has_hardness", &!matches!(self.hardness, Limit::None))
             .finish_non_exhaustive()
@@ -116,41 +120,29 @@ impl LoadingSolver {
 
 impl<'a> LoadingBuilder<'a> {
     fn new(surface: &'a dyn Surface, kernel: &'a dyn InfluenceKernel) -> Self {
-        Self {
+        let settings = Settings {
             surface,
             kernel,
-            updater: Handover::new(),
             rule: ContactRule::default(),
             window_size: None,
             max_nodes: None,
             targets: Vec::new(),
-            max_mean_pressure: None,
             memory_budget: None,
             hardness: Limit::None,
-        }
+        };
+        Self { settings, updater: Handover::new() }
     }
 }
 
 impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// Another updater, with no node in contact.
     pub fn updater<V: LinearUpdater>(self, updater: V) -> LoadingBuilder<'a, V> {
-        LoadingBuilder {
-            surface: self.surface,
-            kernel: self.kernel,
-            updater,
-            rule: self.rule,
-            window_size: self.window_size,
-            max_nodes: self.max_nodes,
-            targets: self.targets,
-            max_mean_pressure: self.max_mean_pressure,
-            memory_budget: self.memory_budget,
-            hardness: self.hardness,
-        }
+        LoadingBuilder { settings: self.settings, updater }
     }
 
     /// Which node touches next; exact by default.
     pub fn rule(mut self, rule: ContactRule) -> Self {
-        self.rule = rule;
+        self.settings.rule = rule;
         self
     }
 
@@ -159,15 +151,15 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// as in the paper. Without a factor it is eight at least, to tell them apart; a kernel of
     /// [`ContactGrowth::Unknown`] is followed one event at a time as long as there is a factor.
     pub fn window_size(mut self, nodes: usize) -> Self {
-        self.window_size = Some(nodes);
+        self.settings.window_size = Some(nodes);
         self
     }
 
-    /// Ends the path at a target: at exactly this load, approach or mean gap, or with as many nodes in
+    /// Ends the path at a target: at exactly this load, mean pressure, approach or mean gap, or with as many nodes in
     /// contact as fit into this fraction of the nominal area. Of several targets the first one reached
     /// counts; of several of one kind the last one given.
     pub fn until(mut self, target: ContactTarget) -> Self {
-        self.targets.push(target);
+        self.settings.targets.push(target);
         self
     }
 
@@ -177,9 +169,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     }
 
     /// Ends the path at exactly this load over the nominal area \[Pa\].
-    pub fn max_mean_pressure(mut self, mean_pressure: f64) -> Self {
-        self.max_mean_pressure = Some(mean_pressure);
-        self
+    pub fn max_mean_pressure(self, mean_pressure: f64) -> Self {
+        self.until(ContactTarget::MeanPressure(mean_pressure))
     }
 
     /// Ends the path at exactly this approach \[m\].
@@ -200,7 +191,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
 
     /// Ends the path before the first event that would bring more than this many nodes into contact.
     pub fn max_nodes(mut self, nodes: usize) -> Self {
-        self.max_nodes = Some(nodes);
+        self.settings.max_nodes = Some(nodes);
         self
     }
 
@@ -215,13 +206,13 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     ///
     /// [`ContactEvent::Yield`]: super::ContactEvent::Yield
     pub fn hardness(mut self, hardness: f64) -> Self {
-        self.hardness = Limit::Uniform(hardness);
+        self.settings.hardness = Limit::Uniform(hardness);
         self
     }
 
     /// The same with a hardness for each node \[Pa\], nx × ny.
     pub fn hardness_map(mut self, hardness: &'a DMatrix<f64>) -> Self {
-        self.hardness = Limit::Map(hardness);
+        self.settings.hardness = Limit::Map(hardness);
         self
     }
 
@@ -230,7 +221,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// (Linux), and without limit elsewhere. Close to the limit windows become smaller. What each thread takes for
     /// products of matrices, some 5 MB, comes on top of it.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
-        self.memory_budget = Some(bytes);
+        self.settings.memory_budget = Some(bytes);
         self
     }
 
@@ -243,6 +234,36 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// for itself, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that
     /// contact grows.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
+        let phase = Phase::new(self.updater);
+        self.settings.build(phase).map(LoadingSolver::of)
+    }
+
+    /// The same path, to go on behind states that it yielded before, in another process perhaps: the next state
+    /// is the one after the last event among them. A limit is no event.
+    ///
+    /// States [of a record](crate::record::LoadingRecord::history) know the end of their last window, where the path then goes on: see
+    /// [`LoadingRecord::resume`](crate::record::LoadingRecord::resume).
+    ///
+    /// Otherwise nothing is searched for again: a factor is made of the nodes in contact in large blocks, n³/3 flops at
+    /// the speed of a matrix product; without one a solution is all. The solution is compared with the last state,
+    /// so that states of another surface or kernel are refused.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::build`]; [`Error::OutOfRange`] for a limit that the states have passed (for the state there see
+    /// [`History::ending_at`]); [`Error::NotOnPath`] for states that are not those of this path, or not in
+    /// the order of a path; [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for nodes that
+    /// are in no such order; [`Error::MemoryBudget`]; those of the updater.
+    pub fn resume(self, history: &History) -> Result<LoadingSolver<U>, Error> {
+        let mut solver = self.build()?;
+        solver.go_on(history)?;
+        Ok(solver)
+    }
+}
+
+impl<'a> Settings<'a> {
+    /// The path before its first state.
+    pub(super) fn build(self, mut phase: Phase) -> Result<LoadingPath, Error> {
         if self.window_size == Some(0) {
             return Err(Error::OutOfRange {
                 quantity: "window size",
@@ -304,11 +325,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             last,
             timings: LoadingTimings::default(),
         };
-        let mut phase = Phase::new(self.updater);
         let end = limits.expected_nodes(grid.nodes(), None);
         let handed_over_at = phase.hand_over(&mut run, end)?.then_some(0);
         phase.make_room(&run)?;
-        Ok(LoadingSolver {
+        Ok(LoadingPath {
             run,
             phase,
             procedure,
@@ -321,45 +341,11 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         })
     }
 
-    /// The same path, to go on behind states that it yielded before, in another process perhaps: the next state
-    /// is the one after the last event among them. A limit is no event.
-    ///
-    /// States [of a record](crate::record::LoadingRecord::history) know the end of their last window, where the path then goes on: see
-    /// [`LoadingRecord::resume`](crate::record::LoadingRecord::resume).
-    ///
-    /// Otherwise nothing is searched for again: a factor is made of the nodes in contact in large blocks, n³/3 flops at
-    /// the speed of a matrix product; without one a solution is all. The solution is compared with the last state,
-    /// so that states of another surface or kernel are refused.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::build`]; [`Error::OutOfRange`] for a limit that the states have passed (for the state there see
-    /// [`History::ending_at`]); [`Error::NotOnPath`] for states that are not those of this path, or not in
-    /// the order of a path; [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for nodes that
-    /// are in no such order; [`Error::MemoryBudget`]; those of the updater.
-    pub fn resume(self, history: &History) -> Result<LoadingSolver<U>, Error> {
-        let mut solver = self.build()?;
-        solver.restore(history)?;
-        if let Some(state) = &solver.state {
-            solver.limits.check_ahead(state, false)?;
-        }
-        match history.window_end() {
-            Some(end) if solver.follow_on(end)? => {}
-            _ => solver.rebuild()?,
-        }
-        Ok(solver)
-    }
-
     fn limits(&self, problem: &Problem) -> Result<Limits, Error> {
         let grid = problem.grid();
         let mut limits = Limits::default();
         for &target in &self.targets {
             limits.set(target, &grid, problem.mean_gap())?;
-        }
-        if let Some(mean_pressure) = self.max_mean_pressure {
-            let mean_pressure = Error::require_positive("greatest mean pressure", mean_pressure)?;
-            let load = ContactTarget::Load(mean_pressure * grid.nominal_area());
-            limits.set(load, &grid, problem.mean_gap())?;
         }
         if let Some(nodes) = self.max_nodes {
             limits.set_nodes(nodes)?;

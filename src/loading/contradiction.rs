@@ -16,6 +16,16 @@ pub(super) struct Slack {
     pub(super) rate: f64,
 }
 
+impl Slack {
+    /// By whatever.
+    pub(super) const ANY: Self = Self {
+        gap: f64::INFINITY,
+        tension: f64::INFINITY,
+        excess: f64::INFINITY,
+        rate: f64::INFINITY,
+    };
+}
+
 /// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns how much
 /// earlier the first was not yet, as far as the rates tell: not after 0.
 pub(super) fn contradiction(

@@ -63,10 +63,10 @@ impl Exact {
 
     /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if nothing can happen to
     /// any node. Returns what went wrong after them.
-    pub(super) fn produce<U: LinearUpdater>(
+    pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
         if run.waiting().is_none() {
@@ -210,10 +210,10 @@ impl Exact {
     }
 
     /// Opens the window on the first `size` nodes of the ranking.
-    fn watch<U: LinearUpdater>(
+    fn watch(
         &mut self,
         run: &mut LoadingRun,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         size: usize,
         horizon: f64,
     ) -> Result<(), Error> {
@@ -266,10 +266,10 @@ impl Exact {
 
     /// Lets path and updater follow to the end of the window, after taking back its last events as long as that contradicts them. The
     /// first event follows from a solution, and needs no check.
-    fn follow<U: LinearUpdater>(
+    fn follow(
         &mut self,
         run: &mut LoadingRun,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
     ) -> Result<(), Error> {
         // When the first contradiction was is an estimate, which must not make the search long if it keeps
         // failing.
@@ -329,10 +329,10 @@ impl Exact {
 
     /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns with it how
     /// much before the end the first contradiction was, as far as rates tell.
-    fn try_end<U: LinearUpdater>(
+    fn try_end(
         &mut self,
         run: &mut LoadingRun,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
     ) -> Result<(Trial, Option<f64>), Error> {
         let end = self.end();
         let approach = run.scalars.approach() + end;
@@ -392,10 +392,10 @@ impl Exact {
     }
 
     /// Lets path and updater follow to the end of a window in which nodes have yielded.
-    fn commit<U: LinearUpdater>(
+    fn commit(
         &mut self,
         run: &mut LoadingRun,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         trial: Trial,
     ) -> Result<(), Error> {
         let step = run.steps();
@@ -423,10 +423,10 @@ impl Exact {
     }
 
     /// The error of a window whose end pulls at a node: contact does not grow as the kernel promises. The next window needs the same solution.
-    fn pulled<U: LinearUpdater>(
+    fn pulled(
         &self,
         run: &mut LoadingRun,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
     ) -> Result<Option<Error>, Error> {
         let end = run.scalars.approach() + self.end();
         run.renew_field(updater, end)?;
@@ -486,10 +486,10 @@ fn slack_at(
 
 /// What a pressure on nodes out of contact, and a gap of nodes in it at some positions, adds to sums over all nodes: of gaps, of plastic
 /// depths, and of these times the hardness. By reciprocity it is what right-hand sides of the same sums answer.
-fn plastic_sums<U: LinearUpdater>(
+fn plastic_sums(
     run: &LoadingRun,
     plastic: &Plastic,
-    updater: &mut U,
+    updater: &mut dyn LinearUpdater,
     (outside, positions): (&[usize], &[usize]),
 ) -> Result<Vec<[f64; SUMS]>, Error> {
     let (order, table) = (run.contact.order(), run.problem.table());

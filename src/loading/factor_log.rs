@@ -113,7 +113,7 @@ impl FactorLog {
     /// those of the updater.
     pub(super) fn replay(
         &self,
-        updater: &mut (impl LinearUpdater + ?Sized),
+        updater: &mut dyn LinearUpdater,
         problem: &Problem,
         contact: &ContactSequence,
         budget: usize,
@@ -172,7 +172,7 @@ impl FactorLog {
 
 /// Lets the nodes at some places leave a contact and its factor at once.
 fn leave(
-    updater: &mut (impl LinearUpdater + ?Sized),
+    updater: &mut dyn LinearUpdater,
     problem: &Problem,
     contact: &mut ContactSequence,
     places: &[usize],

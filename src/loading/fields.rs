@@ -2,14 +2,13 @@
 
 use nalgebra::DMatrix;
 
+use super::path::LoadingPath;
 use super::snapshot::Snapshot;
-use super::solver::LoadingSolver;
 use super::state::LoadingState;
-use crate::contact::{Certificate, Conditions, ErrorLength};
-use crate::updater::LinearUpdater;
+use crate::contact::{Certificate, Conditions, ContactFields, ErrorLength};
 use crate::{Error, HeightMap};
 
-impl<U: LinearUpdater> LoadingSolver<U> {
+impl LoadingPath {
     /// Node indices in contact at the present state, in the order in which they touched.
     #[must_use]
     pub fn contact_order(&self) -> Vec<usize> {
@@ -46,13 +45,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         releases.with_yielded(releases.contact_at(self.run.contact.order(), step), step)
     }
 
-    /// Which nodes have yielded at the present state, with a [hardness](super::LoadingBuilder::hardness).
-    #[must_use]
-    pub fn yielded_map(&self) -> DMatrix<bool> {
-        self.yielded_by(self.state.map_or(0, |state| state.step))
-    }
-
-    /// The same at any state up to the present one.
+    /// Which nodes have yielded at a state up to the present one, with a [hardness](super::LoadingBuilder::hardness).
     ///
     /// # Errors
     ///
@@ -70,26 +63,58 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         map
     }
 
-    /// Plastic depth v \[m\] at the present state: by how much yielded nodes would overlap, 0 elsewhere.
+    /// Pressure, gap, displacement, maps and plastic depth of the present state, without contact before the first: one backward
+    /// substitution with the factor at hand, and one convolution. No pressure is negative: tension within the error of a state, as on a
+    /// node that has just touched, is zero.
     ///
     /// # Errors
     ///
-    /// Those of [`Self::pressure`].
-    pub fn plastic_depth(&mut self) -> Result<DMatrix<f64>, Error> {
-        let displacement = self.displacement()?;
-        let (step, approach) = self.state.map_or((0, 0.0), |s| (s.step, s.contact.approach));
-        Ok(self.total_gap_over(displacement, approach).zip_map(&self.yielded_by(step), depth))
+    /// [`Error::NotOnPath`] for more tension than that; those of the updater.
+    pub fn fields(&mut self) -> Result<ContactFields, Error> {
+        let pressure = self.solved()?;
+        self.fields_under(pressure, self.state)
     }
 
-    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    /// The same at any state of this path up to the present one, or at a state between two events
+    /// that [`History`](super::History) has read.
+    ///
+    /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node
+    /// that *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
+    /// contact. Without a factor a state costs a solution; so does one before the last node that *yielded*, in as much memory again as
+    /// iterations take.
     ///
     /// # Errors
     ///
-    /// Those of [`Self::pressure_at`].
-    pub fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
-        let displacement = self.displacement_at(state)?;
-        let gap = self.total_gap_over(displacement, state.contact.approach);
-        Ok(gap.zip_map(&self.yielded_by(state.step), depth))
+    /// [`Error::StateNotReached`] if the state lies beyond the present one; [`Error::NotOnPath`] if it is not
+    /// a state of this path; those of the updater; before the last node that left,
+    /// [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
+    pub fn fields_at(&mut self, state: &LoadingState) -> Result<ContactFields, Error> {
+        let pressure = self.solved_at(state)?;
+        self.fields_under(pressure, Some(*state))
+    }
+
+    /// Fields under a pressure as it was solved for.
+    fn fields_under(
+        &mut self,
+        pressure: DMatrix<f64>,
+        state: Option<LoadingState>,
+    ) -> Result<ContactFields, Error> {
+        let (step, load, approach) = state.map_or((0, 0.0, 0.0), |state| {
+            (state.step, state.contact.load, state.contact.approach)
+        });
+        let displacement = self.displacement_under(&pressure, load)?;
+        let yielded_map = self.yielded_by(step);
+        let total_gap = self.total_gap_over(&displacement, approach);
+        let gap =
+            total_gap.zip_map(&yielded_map, |gap, has_yielded| if has_yielded { 0.0 } else { gap });
+        Ok(ContactFields {
+            pressure: pressure.map(without_tension),
+            gap,
+            displacement,
+            contact_map: self.map_of(step),
+            plastic_depth: total_gap.zip_map(&yielded_map, depth),
+            yielded_map,
+        })
     }
 
     /// The surface with the plastic depth of the present state taken off, from its highest node before: none of its heights \[m\]
@@ -100,20 +125,20 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::pressure`].
+    /// Those of [`Self::fields`].
     pub fn residual_surface(&mut self) -> Result<HeightMap, Error> {
-        let depth = self.plastic_depth()?;
-        self.without(&depth)
+        let fields = self.fields()?;
+        self.without(&fields.plastic_depth)
     }
 
-    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    /// The same at any state up to the present one: see [`Self::fields_at`].
     ///
     /// # Errors
     ///
-    /// Those of [`Self::pressure_at`].
+    /// Those of [`Self::fields_at`].
     pub fn residual_surface_at(&mut self, state: &LoadingState) -> Result<HeightMap, Error> {
-        let depth = self.plastic_depth_at(state)?;
-        self.without(&depth)
+        let fields = self.fields_at(state)?;
+        self.without(&fields.plastic_depth)
     }
 
     fn without(&self, depth: &DMatrix<f64>) -> Result<HeightMap, Error> {
@@ -130,30 +155,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         Ok(())
     }
 
-    /// Pressure \[Pa\] at the present state, zero before the first: one backward substitution with the
-    /// factor at hand. None is negative: tension within the error of a state, as on a node that has just touched, is zero.
-    ///
-    /// # Errors
-    ///
-    /// Those of the updater; [`Error::NotOnPath`] for more tension than that.
-    pub fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
-        Ok(self.solved()?.map(without_tension))
-    }
-
-    /// Pressure \[Pa\] at any state of this path up to the present one, or at a state between two events
-    /// that [`History`](super::History) has read.
-    ///
-    /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node
-    /// that *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
-    /// contact. Without a factor a state costs a solution; so does one before the last node that *yielded*, in as much memory again as
-    /// iterations take.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::StateNotReached`] if the state lies beyond the present one; [`Error::NotOnPath`] if it is not
-    /// a state of this path; those of the updater; before the last node that left,
-    /// [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
-    pub fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
+    /// The pressure alone at a state: see [`Self::fields_at`].
+    pub(crate) fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         Ok(self.solved_at(state)?.map(without_tension))
     }
 
@@ -174,28 +177,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         Ok(snapshot.pressure)
     }
 
-    /// Displacement of the half-space \[m\] at the present state, positive into it; about its mean if the
-    /// half-space is periodic and its mean displacement arbitrary.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure`].
-    pub fn displacement(&mut self) -> Result<DMatrix<f64>, Error> {
-        let pressure = self.solved()?;
-        let load = self.state.map_or(0.0, |state| state.contact.load);
-        self.displacement_under(&pressure, load)
-    }
-
-    /// The same at any state up to the present one: see [`Self::pressure_at`].
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure_at`].
-    pub fn displacement_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
-        let pressure = self.solved_at(state)?;
-        self.displacement_under(&pressure, state.contact.load)
-    }
-
     fn displacement_under(
         &mut self,
         pressure: &DMatrix<f64>,
@@ -207,82 +188,30 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         Ok(DMatrix::from_iterator(nx, ny, field.map(|u| u - uniform)))
     }
 
-    /// Gap `g + u − δ` \[m\] at the present state: zero in contact, to rounding.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure`].
-    pub fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
-        let displacement = self.displacement()?;
-        let (step, approach) = self.state.map_or((0, 0.0), |s| (s.step, s.contact.approach));
-        Ok(self.gap_over(displacement, (step, approach)))
-    }
-
-    /// The same at any state up to the present one: see [`Self::pressure_at`].
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure_at`].
-    pub fn gap_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
-        let displacement = self.displacement_at(state)?;
-        Ok(self.gap_over(displacement, (state.step, state.contact.approach)))
-    }
-
-    /// Pressure and gap at any state up to the present one, of one solution: see [`Self::pressure_at`].
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure_at`].
-    pub fn pressure_and_gap_at(
-        &mut self,
-        state: &LoadingState,
-    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error> {
-        let pressure = self.solved_at(state)?;
-        let displacement = self.displacement_under(&pressure, state.contact.load)?;
-        let gap = self.gap_over(displacement, (state.step, state.contact.approach));
-        Ok((pressure.map(without_tension), gap))
-    }
-
-    /// The gap, which is none where the overlap is the plastic depth.
-    fn gap_over(&self, displacement: DMatrix<f64>, (step, approach): (usize, f64)) -> DMatrix<f64> {
-        let mut gap = self.total_gap_over(displacement, approach);
-        for node in self.run.releases.yielded_at(step) {
-            gap.as_mut_slice()[node] = 0.0;
-        }
-        gap
-    }
-
-    fn total_gap_over(&self, mut displacement: DMatrix<f64>, approach: f64) -> DMatrix<f64> {
-        for (value, initial) in displacement.iter_mut().zip(self.problem().initial_gap()) {
+    /// Gaps `g + u − δ`: minus the plastic depth where nodes have yielded.
+    fn total_gap_over(&self, displacement: &DMatrix<f64>, approach: f64) -> DMatrix<f64> {
+        let mut gap = displacement.clone();
+        for (value, initial) in gap.iter_mut().zip(self.problem().initial_gap()) {
             *value = initial + *value - approach;
         }
-        displacement
-    }
-
-    /// Greatest pressure \[Pa\] at the present state.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure`].
-    pub fn max_pressure(&mut self) -> Result<f64, Error> {
-        Ok(self.pressure()?.iter().copied().fold(0.0, f64::max))
+        gap
     }
 
     /// How well the present state fulfils the conditions of contact, computed afresh.
     ///
     /// # Errors
     ///
-    /// Those of [`Self::pressure`].
+    /// Those of [`Self::fields`].
     pub fn certificate(&mut self) -> Result<Certificate, Error> {
         let pressure = self.solved()?;
         self.certify(&pressure, self.state)
     }
 
-    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    /// The same at any state up to the present one: see [`Self::fields_at`].
     ///
     /// # Errors
     ///
-    /// Those of [`Self::pressure_at`].
+    /// Those of [`Self::fields_at`].
     pub fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
         let pressure = self.solved_at(state)?;
         self.certify(&pressure, Some(*state))
@@ -332,7 +261,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// # Errors
     ///
-    /// [`Error::NotOnPath`] with what is wrong, and those of [`Self::pressure`].
+    /// [`Error::NotOnPath`] with what is wrong, and those of [`Self::fields`].
     pub fn verify(&mut self) -> Result<(), Error> {
         let Some(state) = self.state else {
             return Ok(());
@@ -359,6 +288,7 @@ fn depth(total_gap: f64, has_yielded: bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loading::LoadingSolver;
     use crate::{ContactTarget, test_chain};
 
     /// Nodes 0 and 2 touch at 0 and at the approach 1, and the path ends at 3, where they carry 3/4 and 1/2.
@@ -368,7 +298,10 @@ mod tests {
         let builder = LoadingSolver::builder(&surface, &kernel).until(ContactTarget::Approach(3.0));
         let mut path = builder.build()?;
         assert!(path.contact_order().is_empty() && !path.contact_map().iter().any(|is_in| *is_in));
-        assert_eq!((path.pressure()?, path.max_pressure()?), (DMatrix::zeros(4, 1), 0.0));
+        assert_eq!(
+            (path.fields()?.pressure, path.fields()?.max_pressure()),
+            (DMatrix::zeros(4, 1), 0.0)
+        );
         let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
         assert_eq!(states.len(), 3);
         Ok((path, states))
@@ -387,10 +320,10 @@ mod tests {
         let (mut path, _) = path()?;
         assert_eq!(path.contact_order(), [0, 2]);
         assert_eq!(path.contact_map().as_slice(), [true, false, true, false]);
-        near(&path.pressure()?, [0.75, 0.0, 0.5, 0.0]);
-        near(&path.displacement()?, [3.0, 1.25, 2.0, 0.5]);
-        near(&path.gap()?, [0.0, 7.25, 0.0, 6.5]);
-        assert!((path.max_pressure()? - 0.75).abs() < 1e-15);
+        near(&path.fields()?.pressure, [0.75, 0.0, 0.5, 0.0]);
+        near(&path.fields()?.displacement, [3.0, 1.25, 2.0, 0.5]);
+        near(&path.fields()?.gap, [0.0, 7.25, 0.0, 6.5]);
+        assert!((path.fields()?.max_pressure() - 0.75).abs() < 1e-15);
         // The mean pressure in contact is 5/8; heights have the root mean square 4.26.
         let found = path.certificate()?;
         let squares: f64 = [4.75, 4.25, 3.75, 4.25].iter().map(|h: &f64| h * h).sum();
@@ -447,8 +380,8 @@ mod tests {
         assert_eq!(path.contact_map_at(&second)?.as_slice(), [true, false, true, false]);
         near(&path.pressure_at(&first)?, [0.0; 4]);
         near(&path.pressure_at(&second)?, [0.25, 0.0, 0.0, 0.0]);
-        near(&path.displacement_at(&second)?, [1.0, 0.25, 0.0, 0.0]);
-        near(&path.gap_at(&second)?, [0.0, 8.25, 0.0, 8.0]);
+        near(&path.fields_at(&second)?.displacement, [1.0, 0.25, 0.0, 0.0]);
+        near(&path.fields_at(&second)?.gap, [0.0, 8.25, 0.0, 8.0]);
         // As found there: the second node has no pressure yet, and the least gap is 8.
         let found = path.certificate_at(&second)?;
         assert!((found.least_gap * found.length - 8.0).abs() < 1e-13, "{found:?}");
@@ -474,7 +407,7 @@ mod tests {
         let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
         let mut greatest = 0.0_f64;
         for state in &states {
-            let displacement = path.displacement_at(state)?;
+            let displacement = path.fields_at(state)?.displacement;
             greatest = greatest.max(displacement.max());
             assert!(displacement.mean().abs() < 1e-12 * greatest.max(1.0));
         }

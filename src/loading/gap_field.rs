@@ -71,11 +71,11 @@ impl GapField {
     }
 
     /// Solves on the contact at an approach, and computes all displacements.
-    pub(super) fn solve<U: LinearUpdater + ?Sized>(
+    pub(super) fn solve(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         approach: f64,
     ) -> Result<(), Error> {
         self.revision = None;
@@ -224,10 +224,10 @@ impl GapField {
 }
 
 /// Solves on the first `count` nodes of a contact at an approach, and checks that there is a value for each.
-pub(super) fn solve<U: LinearUpdater + ?Sized>(
+pub(super) fn solve(
     problem: &Problem,
     contact: &ContactSequence,
-    updater: &mut U,
+    updater: &mut dyn LinearUpdater,
     (count, approach): (usize, f64),
     solution: &mut Solution,
 ) -> Result<(), Error> {

@@ -12,10 +12,9 @@ use crate::{Error, Grid};
 /// The states of a path in the order of loading, to be read at any instant between them.
 ///
 /// Between two events a path is linear in the approach, so that every reading is exact. The pressure that
-/// goes with it is [`LoadingSolver::pressure_at`](super::LoadingSolver::pressure_at).
+/// goes with it is [`LoadingPath::fields_at`](super::LoadingPath::fields_at).
 ///
 /// ```
-/// use asperity::loading::History;
 /// use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
@@ -23,12 +22,12 @@ use crate::{Error, Grid};
 /// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 ///     .max_load(1000.0)
 ///     .build()?;
-/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// let history = path.run()?;
 /// // Up to and at the limit:
 /// for load in [10.0, 500.0, 1000.0] {
 ///     let state = history.at(ContactTarget::Load(load))?;
 ///     assert_eq!(state.contact.load, load);
-///     let pressure = path.pressure_at(&state)?;
+///     let pressure = path.fields_at(&state)?.pressure;
 ///     assert!((pressure.sum() * path.grid().cell_area() / load - 1.0).abs() < 1e-12);
 /// }
 /// assert!(history.at_load(1001.0).is_none());
@@ -140,6 +139,13 @@ impl History {
     pub fn at(&self, target: ContactTarget) -> Result<LoadingState, Error> {
         let (quantity, value, state) = match target {
             ContactTarget::Load(load) => ("load of a state", load, self.at_load(load)),
+            ContactTarget::MeanPressure(mean_pressure) => {
+                let last = self.states.last().map(|state| state.contact);
+                let area = |last: ContactState| last.contact_area / last.contact_area_fraction;
+                let load = last.map(|last| mean_pressure * area(last));
+                let state = load.and_then(|load| self.at_load(load));
+                ("mean pressure of a state", mean_pressure, state)
+            }
             ContactTarget::Approach(approach) => {
                 ("approach of a state", approach, self.at_approach(approach))
             }
@@ -315,6 +321,7 @@ mod tests {
         }
         for (target, nodes) in [
             (ContactTarget::Load(3.0), 2),
+            (ContactTarget::MeanPressure(0.3), 2),
             (ContactTarget::Approach(1.5), 2),
             (ContactTarget::MeanGap(1.25), 2),
             (ContactTarget::AreaFraction(0.4), 4),

@@ -84,6 +84,12 @@ impl Limits {
             ContactTarget::Load(load) => {
                 self.load = Error::require_positive("greatest load", load)?;
             }
+            ContactTarget::MeanPressure(mean_pressure) => {
+                let mean_pressure =
+                    Error::require_positive("greatest mean pressure", mean_pressure)?;
+                let load = ContactTarget::Load(mean_pressure * grid.nominal_area());
+                self.set(load, grid, unloaded)?;
+            }
             ContactTarget::Approach(approach) => {
                 self.approach = Error::require_positive("greatest approach", approach)?;
             }

@@ -68,22 +68,17 @@
 //! within 10⁻⁹ of the approach with another one.
 
 mod builder;
-#[cfg(test)]
-#[allow(clippy::panic)]
-mod complementary;
 mod contradiction;
 mod cost;
 mod estimated;
 mod event_cost;
 mod exact;
 mod factor_log;
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod failing_iterations;
 mod fields;
 mod gap_field;
 mod history;
 mod limits;
+mod path;
 mod phase;
 mod plastic;
 mod ranking;
@@ -99,6 +94,12 @@ mod stepwise;
 mod sum;
 #[cfg(test)]
 mod test_chain;
+#[cfg(test)]
+#[allow(clippy::panic)]
+mod test_complementary;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod test_failing_iterations;
 mod tolerances;
 mod trial;
 mod tuning;
@@ -118,6 +119,7 @@ pub use event_cost::{factor_seconds, greatest_factor, iteration_seconds, last_fa
 pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
+pub use path::LoadingPath;
 pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
 #[doc(hidden)] // for the studies of this repository

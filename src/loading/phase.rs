@@ -1,5 +1,7 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
+use std::any::Any;
+
 use super::estimated::resumed::EstimatedEnd;
 use super::event_cost::{Rest, greatest_factor};
 use super::factor_log::FactorLog;
@@ -9,28 +11,33 @@ use super::tuning::{LEAST_CONTACT, LEAST_WINDOW};
 use super::window::Window;
 use crate::contact::ContactSequence;
 use crate::updater::{
-    ConjugateGradient, Iterations, Left, LinearUpdater, Method, RecursiveCholesky, Solution,
+    ConjugateGradient, Handover, Iterations, Left, LinearUpdater, RecursiveCholesky, Solution,
     WindowFactor, join_all,
 };
 use crate::{ContactGrowth, Error, Problem};
 
 /// The solver of a path.
 #[derive(Debug)]
-pub(super) enum Phase<U> {
+pub(super) enum Phase {
     /// An updater; the path gives it up for iterations when its rest is cheaper with these, if `may_end`.
-    Factor { updater: U, may_end: bool },
+    Factor { updater: Box<dyn LinearUpdater>, may_end: bool },
     /// Iterations, whose Schur complements the path corrects.
     Iterations(Box<dyn Iterations>),
 }
 
-impl<U: LinearUpdater> Phase<U> {
-    /// Begins with an updater that has no node in contact.
-    pub(super) fn new(updater: U) -> Self {
-        match updater.method() {
-            Method::Factor => Self::Factor { updater, may_end: false },
-            Method::FactorWhileItPays => Self::Factor { updater, may_end: true },
-            Method::Iterations(iterations) => Self::Iterations(iterations),
+impl Phase {
+    /// Begins with an updater that has no node in contact: with iterations where it is one of these.
+    pub(super) fn new(updater: impl LinearUpdater) -> Self {
+        let updater: Box<dyn LinearUpdater> = Box::new(updater);
+        let mut own: &dyn Any = &*updater;
+        while let Some(boxed) = own.downcast_ref::<Box<dyn LinearUpdater>>() {
+            own = &**boxed;
         }
+        if let Some(iterations) = own.downcast_ref::<ConjugateGradient>() {
+            return Self::Iterations(Box::new(iterations.clone()));
+        }
+        let may_end = own.is::<Handover>();
+        Self::Factor { updater, may_end }
     }
 
     /// Gives up the factor if it does not serve any more on a path to `end` nodes in contact. Returns whether it has just done so.
@@ -46,7 +53,7 @@ impl<U: LinearUpdater> Phase<U> {
         if let Self::Factor { updater, .. } = self
             && count > 0
         {
-            gap_field::solve(problem, contact, updater, (count, approach), &mut solution)?;
+            gap_field::solve(problem, contact, updater.as_mut(), (count, approach), &mut solution)?;
             log::info!("{count} nodes in contact: without a factor from here");
         }
         // The factor goes before iterations fill its place: both at once may not fit.
@@ -96,7 +103,7 @@ impl<U: LinearUpdater> Phase<U> {
     /// Makes the gap field of a path that of its contact at an approach.
     pub(super) fn renew_field(&mut self, run: &mut LoadingRun, approach: f64) -> Result<(), Error> {
         match self {
-            Self::Factor { updater, .. } => run.renew_field(updater, approach),
+            Self::Factor { updater, .. } => run.renew_field(updater.as_mut(), approach),
             Self::Iterations(_) if run.field.belongs_to(&run.contact, approach) => Ok(()),
             Self::Iterations(iterations) => {
                 run.advance_field(&mut **iterations, approach, f64::INFINITY)
@@ -114,11 +121,11 @@ impl<U: LinearUpdater> Phase<U> {
     ) -> Result<(), Error> {
         match self {
             Self::Factor { updater, .. } => {
-                run.affordable(updater, 1)?;
-                run.watch(updater, window, std::iter::once(node), f64::INFINITY)?;
+                run.affordable(updater.as_ref(), 1)?;
+                run.watch(updater.as_mut(), window, std::iter::once(node), f64::INFINITY)?;
                 let touched = window.happen(0, time);
                 touched.map_err(|bad| run.not_positive_definite(bad))?;
-                run.join(updater, window)
+                run.join(updater.as_mut(), window)
             }
             Self::Iterations(_) => {
                 self.check_room(run, run.contact.len() + 1)?;
@@ -173,7 +180,7 @@ impl<U: LinearUpdater> Phase<U> {
         }
         let restored = match self {
             Self::Factor { updater, .. } => {
-                join_all(updater, &run.problem, &mut run.contact, order, run.memory.left())
+                join_all(updater.as_mut(), &run.problem, &mut run.contact, order, run.memory.left())
                     .map_err(|error| run.memory.in_all(error))
             }
             Self::Iterations(_) => order.iter().try_for_each(|&node| run.contact.push(node)),
@@ -190,7 +197,7 @@ impl<U: LinearUpdater> Phase<U> {
     ) -> Result<bool, Error> {
         match self {
             Self::Factor { updater, .. } => {
-                log.replay(updater, &run.problem, contact, run.memory.left())
+                log.replay(updater.as_mut(), &run.problem, contact, run.memory.left())
             }
             Self::Iterations(_) => Ok(false),
         }
@@ -259,7 +266,7 @@ impl<U: LinearUpdater> Phase<U> {
         }
         match self {
             Self::Factor { updater, .. } => {
-                gap_field::solve(problem, contact, updater, at, solution)?;
+                gap_field::solve(problem, contact, updater.as_mut(), at, solution)?;
             }
             Self::Iterations(iterations) => {
                 iterations.solve_apart(problem, contact, at.0, approach, solution)?;
@@ -314,7 +321,7 @@ mod tests {
     /// A path on a flat surface of 128 × 128 nodes, of which the updater may hold so many bytes.
     fn flat(kernel: &dyn InfluenceKernel, budget: usize) -> Result<LoadingRun, Error> {
         let surface = HeightMap::new(nalgebra::DMatrix::zeros(128, 128))?;
-        let mut run = LoadingSolver::builder(&surface, kernel).build()?.run;
+        let mut run = LoadingSolver::builder(&surface, kernel).build()?.into_path().run;
         run.memory = Memory { budget, fixed: 0 };
         Ok(run)
     }
@@ -377,7 +384,7 @@ mod tests {
     }
 
     /// Two of six nodes are in contact, with a factor that fits.
-    fn two_in_contact() -> Result<(LoadingRun, Phase<Handover>), Error> {
+    fn two_in_contact() -> Result<(LoadingRun, Phase), Error> {
         let mut run = test_chain::run(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0])?;
         let mut phase = Phase::new(Handover::new());
         assert!(!phase.restore(&mut run, &[2, 0], 6)?);
@@ -506,7 +513,9 @@ mod tests {
     fn both_phases_find_the_same_states() -> Result<(), Error> {
         let kernel = Boussinesq::new(Grid::new(14, 12, 1.0, 1.5)?, 1.0)?;
         let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
-        fn states<U: LinearUpdater>(path: LoadingSolver<U>) -> Result<Vec<LoadingState>, Error> {
+        fn states(
+            path: impl Iterator<Item = Result<LoadingState, Error>>,
+        ) -> Result<Vec<LoadingState>, Error> {
             path.collect()
         }
         let builder = || LoadingSolver::builder(&surface, &kernel).window_size(12);

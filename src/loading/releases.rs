@@ -16,7 +16,7 @@ struct Release {
 }
 
 /// All nodes that left, in the order in which they did.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Releases {
     log: Vec<Release>,
     /// From this step on, contacts are prefixes of what the updater holds.

@@ -2,14 +2,26 @@
 
 use super::factor_log::FactorLog;
 use super::history::History;
+use super::path::{LoadingPath, Procedure};
 use super::snapshot::{Snapshot, not_on_path};
-use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactSequence;
-use crate::updater::{Left, LinearUpdater};
+use crate::updater::Left;
 use crate::{Error, Grid};
 
-impl<U: LinearUpdater> LoadingSolver<U> {
+impl LoadingPath {
+    /// Goes on behind states that this path yielded before.
+    pub(super) fn go_on(&mut self, history: &History) -> Result<(), Error> {
+        self.restore(history)?;
+        if let Some(state) = &self.state {
+            self.limits.check_ahead(state, false)?;
+        }
+        match history.window_end() {
+            Some(end) if self.follow_on(end)? => Ok(()),
+            _ => self.rebuild(),
+        }
+    }
+
     /// Puts a path that has not begun behind the states of an earlier one, of the same surface and kernel:
     /// contact and order are taken from them, and nothing is solved yet.
     pub(crate) fn restore(&mut self, history: &History) -> Result<(), Error> {

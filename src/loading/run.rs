@@ -109,6 +109,16 @@ impl Mark {
     }
 }
 
+/// Where a path was before trials that it followed.
+#[derive(Debug)]
+pub(super) struct Before {
+    problem: Problem,
+    pub(super) contact: ContactSequence,
+    plastic: Option<Arc<Plastic>>,
+    releases: Releases,
+    scalars: PathScalars,
+}
+
 impl LoadingRun {
     /// Number of events so far, those in the queue included.
     pub(super) fn steps(&self) -> usize {
@@ -189,10 +199,32 @@ impl LoadingRun {
         cut(&self.problem, &self.contact)
     }
 
+    /// All that a trial changes.
+    pub(super) fn before(&self) -> Before {
+        Before {
+            problem: self.problem.clone(),
+            contact: self.contact.clone(),
+            plastic: self.plastic.clone(),
+            releases: self.releases.clone(),
+            scalars: self.scalars,
+        }
+    }
+
+    /// Takes back all trials since.
+    pub(super) fn go_back(&mut self, before: Before) {
+        let Before { problem, contact, plastic, releases, scalars } = before;
+        self.problem = problem;
+        self.contact = contact;
+        self.plastic = plastic;
+        self.releases = releases;
+        self.scalars = scalars;
+        self.field.forget();
+    }
+
     /// Makes the gap field that of the present contact at an approach.
-    pub(super) fn renew_field<U: LinearUpdater>(
+    pub(super) fn renew_field(
         &mut self,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         approach: f64,
     ) -> Result<(), Error> {
         if self.field.belongs_to(&self.contact, approach) {
@@ -281,9 +313,9 @@ impl LoadingRun {
     }
 
     /// Opens a window on nodes at the present approach.
-    pub(super) fn watch<U: LinearUpdater>(
+    pub(super) fn watch(
         &mut self,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         window: &mut Window,
         nodes: impl Iterator<Item = usize>,
         horizon: f64,
@@ -310,9 +342,9 @@ impl LoadingRun {
     }
 
     /// Lets the nodes of a window's events join the contact.
-    pub(super) fn join<U: LinearUpdater>(
+    pub(super) fn join(
         &mut self,
-        updater: &mut U,
+        updater: &mut dyn LinearUpdater,
         window: &Window,
     ) -> Result<(), Error> {
         let mark = self.mark();
@@ -402,9 +434,9 @@ impl LoadingRun {
     }
 
     /// The greatest window up to `size` that stays within the memory budget beside an updater.
-    pub(super) fn affordable<U: LinearUpdater>(
+    pub(super) fn affordable(
         &self,
-        updater: &U,
+        updater: &dyn LinearUpdater,
         mut size: usize,
     ) -> Result<usize, Error> {
         let count = self.contact.len();

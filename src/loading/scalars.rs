@@ -123,28 +123,25 @@ impl PathScalars {
         self.approach = approach;
     }
 
-    /// Differences of stiffness and closing rate from those of another front.
-    pub(super) fn missing(&self, other: &Self) -> [f64; 2] {
-        let closing = (self.closing - other.closing) * self.grid.nodes() as f64;
-        [other.unit_stiffness - self.unit_stiffness, closing]
-    }
-
-    /// Adds to load, mean gap and energy what they lack at the end of a window, in proportion to the way there,
-    /// for the energy to its square: `walked` got there from this one's window, `end` is exact. The way of the load begins where that was
-    /// known last.
-    pub(super) fn pin(&mut self, walked: &Self, end: &Self, [way_of_load, way]: [f64; 2]) {
+    /// Adds to load, mean gap, energy and plastic sums what they lack at the end of a window, where `walked` got there from this one's
+    /// window and `end` is exact: by the way of the load, the way of the rest, and those of both plastic sums. Of the energy, what comes in
+    /// lacks by the square of the way, and plastic work takes from it.
+    pub(super) fn pin(
+        &mut self,
+        walked: &Self,
+        end: &Self,
+        [way_of_load, way, way_of_depth, way_of_work]: [f64; 4],
+    ) {
+        let plastic = |scalars: &Self| scalars.plastic.unwrap_or_default();
+        let [depth, work] =
+            [plastic(end).depth - plastic(walked).depth, plastic(end).work - plastic(walked).work];
+        let lost = self.grid.cell_area() * work;
         self.load += way_of_load * (end.load - walked.load);
         self.mean_gap += way * (end.mean_gap - walked.mean_gap);
-        self.energy += way * way * (end.energy - walked.energy);
-    }
-
-    /// The same of plastic sums, each by its own `parts`.
-    pub(super) fn pin_plastic(&mut self, walked: &Self, end: &Self, [depth, work]: [f64; 2]) {
-        if let (Some(own), Some(walked), Some(end)) =
-            (&mut self.plastic, walked.plastic, end.plastic)
-        {
-            own.depth += depth * (end.depth - walked.depth);
-            own.work += work * (end.work - walked.work);
+        self.energy += way * way * (end.energy - walked.energy + lost) - way_of_work * lost;
+        if let Some(own) = &mut self.plastic {
+            own.depth += way_of_depth * depth;
+            own.work += way_of_work * work;
         }
     }
 
@@ -379,28 +376,28 @@ mod tests {
         walked.advance(2.0);
         let mut end = walked;
         end.touch([0.125, 0.5], 2);
-        assert_eq!(start.missing(&end), [0.125, 0.5]);
         (end.load, end.mean_gap, end.energy) = (1.5, 0.25, 3.0);
         let mut scalars = start;
-        scalars.pin(&walked, &end, [0.5; 2]);
+        scalars.pin(&walked, &end, [0.5, 0.5, 0.0, 0.0]);
         // Half of 0.5 and of −0.25, a quarter of 2.
         assert_eq!((scalars.load, scalars.mean_gap, scalars.energy), (0.25, 1.875, 0.5));
         Ok(())
     }
 
-    /// What plastic sums lack comes in parts: of 1 and of 2.
+    /// What plastic sums lack comes in parts, of 1 and of 2; and the energy falls by what the work grows.
     #[test]
     fn plastic_sums_are_pinned_to_their_ends() -> Result<(), Error> {
-        let with = |depth: f64| -> Result<PathScalars, Error> {
+        let with = |depth: f64, energy: f64| -> Result<PathScalars, Error> {
             let plastic = PlasticScalars { nodes: 1, depth, work: 2.0 * depth, rates: [0.0; 2] };
-            Ok(PathScalars { plastic: Some(plastic), ..touched()? })
+            Ok(PathScalars { plastic: Some(plastic), energy, ..touched()? })
         };
-        let mut scalars = with(2.5)?;
-        scalars.pin_plastic(&with(3.0)?, &with(4.0)?, [0.5, 0.25]);
+        let mut scalars = with(2.5, 7.0)?;
+        let area = scalars.grid.cell_area();
+        scalars.pin(&with(3.0, 9.0)?, &with(4.0, 10.0)?, [0.0, 0.5, 0.5, 0.25]);
         assert_eq!(scalars.lengths(), [0.0, 3.0, 5.5]);
-        // The first node yields behind the end of the walk.
-        scalars.pin_plastic(&touched()?, &with(4.0)?, [1.0; 2]);
-        assert_eq!(scalars.lengths(), [0.0, 3.0, 5.5]);
+        // A quarter of 1 and of the work that is lacking, less a quarter of that.
+        let energy = 7.0 + 0.25 * (1.0 + 2.0 * area) - 0.25 * 2.0 * area;
+        assert!((scalars.energy - energy).abs() < 1e-15, "{scalars:?}");
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use super::run::LoadingRun;
 use super::state::LoadingState;
 use crate::Error;
 use crate::contact::Certificate;
-use crate::updater::{LinearUpdater, Solution};
+use crate::updater::Solution;
 
 /// How far a state may be off to be recognised.
 fn allowed(state: &LoadingState) -> f64 {
@@ -46,9 +46,9 @@ pub(super) struct Snapshot {
 
 impl Snapshot {
     /// The solution at a state of this path.
-    pub(super) fn of<U: LinearUpdater>(
+    pub(super) fn of(
         run: &LoadingRun,
-        phase: &mut Phase<U>,
+        phase: &mut Phase,
         state: &LoadingState,
     ) -> Result<Self, Error> {
         let mut solution = Solution::default();
@@ -78,10 +78,10 @@ impl Snapshot {
 
     /// `Ok` if the solution with the nodes and the approach of a state has its load, and pressures and gaps that
     /// a state has.
-    pub(super) fn recognise<U: LinearUpdater>(
+    pub(super) fn recognise(
         &self,
         run: &mut LoadingRun,
-        phase: &Phase<U>,
+        phase: &Phase,
         state: &LoadingState,
     ) -> Result<(), Error> {
         let refused =
@@ -241,10 +241,10 @@ mod tests {
     impl Case<'_> {
         /// What it is refused for.
         fn refused(&self) -> Result<Option<&'static str>, Error> {
-            self.refused_with(Dense)
+            self.refused_with(Phase::new(Dense))
         }
 
-        fn refused_with(&self, updater: impl LinearUpdater) -> Result<Option<&'static str>, Error> {
+        fn refused_with(&self, phase: Phase) -> Result<Option<&'static str>, Error> {
             let mut run = test_chain::run(self.gaps)?;
             for &node in self.contact {
                 run.contact.push(node)?;
@@ -265,7 +265,7 @@ mod tests {
                 ContactState::new(&grid, self.pressures.len(), self.approach, self.load, 0.0);
             let mut state = LoadingState::new(self.step, ContactEvent::Touch, (0, 0), contact);
             state.approach_error = self.error;
-            match snapshot.recognise(&mut run, &Phase::new(updater), &state) {
+            match snapshot.recognise(&mut run, &phase, &state) {
                 Err(Error::NotOnPath { quantity, .. }) => Ok(Some(quantity)),
                 done => done.map(|()| None),
             }
@@ -357,7 +357,8 @@ mod tests {
         for (least, refused) in [(2.8e-3, None), (2.9e-3, refused)] {
             let pressures = [(0, 1.0), (2, -least)];
             let case = pulled(&pressures);
-            let found = case.refused_with(test_chain::Altered::inexact(1e-3))?;
+            let found =
+                case.refused_with(Phase::Iterations(Box::new(test_chain::Altered::inexact(1e-3))))?;
             assert_eq!(found, refused, "{least:e}");
         }
         Ok(())

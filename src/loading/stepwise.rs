@@ -10,7 +10,7 @@ use super::state::ContactEvent;
 use super::tolerances::{WindowTolerances, ties_until};
 use super::window::Window;
 use crate::Error;
-use crate::updater::{Left, LinearUpdater, Solution};
+use crate::updater::{Left, Solution};
 
 /// The next event, unless another one comes first.
 #[derive(Debug, Clone, Copy)]
@@ -67,11 +67,7 @@ impl Stepwise {
     }
 
     /// Finds the next event, if that has not been done.
-    pub(super) fn begin<U: LinearUpdater>(
-        &mut self,
-        run: &mut LoadingRun,
-        phase: &mut Phase<U>,
-    ) -> Result<(), Error> {
+    pub(super) fn begin(&mut self, run: &mut LoadingRun, phase: &mut Phase) -> Result<(), Error> {
         if !self.has_begun {
             self.survey(run, phase)?;
             self.has_begun = true;
@@ -80,10 +76,10 @@ impl Stepwise {
     }
 
     /// Computes one state, unless there is none with at most `most_nodes` in contact.
-    pub(super) fn produce<U: LinearUpdater>(
+    pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
-        phase: &mut Phase<U>,
+        phase: &mut Phase,
         most_nodes: usize,
     ) -> Result<(), Error> {
         self.begin(run, phase)?;
@@ -139,9 +135,9 @@ impl Stepwise {
     }
 
     /// Takes a node out of the contact; returns its place there.
-    fn release<U: LinearUpdater>(
+    fn release(
         run: &mut LoadingRun,
-        phase: &mut Phase<U>,
+        phase: &mut Phase,
         step: usize,
         node: usize,
     ) -> Result<usize, Error> {
@@ -156,11 +152,7 @@ impl Stepwise {
     }
 
     /// Solves at the present approach, checks the conditions of contact there, and finds the next event.
-    fn survey<U: LinearUpdater>(
-        &mut self,
-        run: &mut LoadingRun,
-        phase: &mut Phase<U>,
-    ) -> Result<(), Error> {
+    fn survey(&mut self, run: &mut LoadingRun, phase: &mut Phase) -> Result<(), Error> {
         self.upcoming = None;
         let approach = run.scalars.approach();
         phase.renew_field(run, approach)?;
@@ -300,7 +292,7 @@ mod tests {
     #[test]
     fn events_come_one_at_a_time() -> Result<(), Error> {
         let mut run = test_chain::run(&[0.0, 1.25, 1.0, 9.0])?;
-        let mut phase = Phase::new(test_chain::Altered::inexact(1e-6));
+        let mut phase = Phase::Iterations(Box::new(test_chain::Altered::inexact(1e-6)));
         let mut stepwise = Stepwise::default();
         for _ in 0..4 {
             stepwise.produce(&mut run, &mut phase, 3)?;

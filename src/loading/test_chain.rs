@@ -9,14 +9,14 @@ use super::state::ContactEvent;
 use super::tolerances::WindowTolerances;
 use super::window::{Course, Window, WindowEvent};
 use crate::updater::Dense;
-pub(super) use crate::updater::altered::Altered;
+pub(super) use crate::updater::test_altered::Altered;
 use crate::{Error, test_chain};
 
 /// A path that has not begun.
 pub(super) fn run(gaps: &[f64]) -> Result<LoadingRun, Error> {
     let (surface, kernel) = (test_chain::surface(gaps)?, test_chain::kernel(gaps.len())?);
     let builder = LoadingSolver::builder(&surface, &kernel).updater(Dense);
-    Ok(builder.build()?.run)
+    Ok(builder.build()?.into_path().run)
 }
 
 /// A path with nodes in contact, solved at an approach.

@@ -1,13 +1,13 @@
 //! The stiffness of all nodes in contact, those that have yielded among them.
 
+use super::path::LoadingPath;
 use super::snapshot::not_on_path;
-use super::solver::LoadingSolver;
 use super::state::LoadingState;
 use super::sum::Sum;
-use crate::updater::{LinearUpdater, RecursiveCholesky};
+use crate::updater::RecursiveCholesky;
 use crate::{Error, Problem};
 
-impl<U: LinearUpdater> LoadingSolver<U> {
+impl LoadingPath {
     /// Adds the stiffnesses on unloading to states of this path, if it has a hardness:
     /// [`contact_unloading_stiffness`](crate::contact::PlasticState::contact_unloading_stiffness) and
     /// [`interfacial_unloading_stiffness`](crate::contact::PlasticState::interfacial_unloading_stiffness). Other paths unload as they load.

@@ -7,14 +7,14 @@ use std::sync::Arc;
 use super::estimated::resumed::EstimatedEnd;
 use super::factor_log::FactorLog;
 use super::limits::LoadingEnd;
+use super::path::{LoadingPath, Procedure};
 use super::phase::Phase;
 use super::snapshot::{Snapshot, not_on_path};
-use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
 use super::tuning::RECOGNISED;
 use crate::Error;
 use crate::contact::ContactState;
-use crate::updater::{Left, LinearUpdater, Solution};
+use crate::updater::{Left, Solution};
 
 /// The end of the last window that a path has computed, which lies ahead of the state that it has yielded.
 ///
@@ -51,7 +51,7 @@ pub(crate) struct FactorEnd {
     pub(crate) solution: Option<Solution>,
 }
 
-impl<U: LinearUpdater> LoadingSolver<U> {
+impl LoadingPath {
     /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, and behind an
     /// error.
     pub(crate) fn window_end(&self) -> Option<WindowEnd> {
@@ -227,9 +227,10 @@ fn groups<'a>(counts: &'a [usize], yielded: &'a [usize]) -> impl Iterator<Item =
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loading::LoadingSolver;
     use crate::loading::{History, LoadingBuilder};
     use crate::surface::{Amplitude, SelfAffine};
-    use crate::updater::{ConjugateGradient, RecursiveCholesky};
+    use crate::updater::{ConjugateGradient, LinearUpdater, RecursiveCholesky};
     use crate::{Boussinesq, Grid};
 
     /// Takes a path behind 60 of 168 states, changes what it goes on with, and tells whether it is refused.

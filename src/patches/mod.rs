@@ -24,7 +24,7 @@
 //! # fn main() -> Result<(), asperity::Error> {
 //! let half_space = PeriodicBoussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let events = history.states().iter().map(|state| (state.event, state.node));
 //! let contact = contact_sequence(path.grid(), events)?;
 //!

@@ -38,7 +38,6 @@ pub fn contact_sequence(
 /// load W.
 ///
 /// ```
-/// use asperity::loading::History;
 /// use asperity::patches::activation_map;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
@@ -47,7 +46,7 @@ pub fn contact_sequence(
 /// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 ///     .max_area_fraction(0.5)
 ///     .build()?;
-/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// let history = path.run()?;
 /// let load = activation_map(&path.grid(), history.states(), |state| state.contact.load)?;
 /// let reached = path.state().map_or(0.0, |state| state.contact.load);
 /// assert_eq!(load.map(|touched| touched <= reached), path.contact_map());

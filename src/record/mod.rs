@@ -5,7 +5,6 @@
 //! ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)).
 //!
 //! ```
-//! use asperity::loading::History;
 //! use asperity::record::LoadingRecord;
 //! use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};
 //!
@@ -14,13 +13,13 @@
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 //!     .max_load(500.0)
 //!     .build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let record = LoadingRecord::new(&path, history)?;
 //!
 //! // Fields of a state, without the path:
 //! let at_100_newtons = record.history().at(ContactTarget::Load(100.0))?;
 //! let mut replay = record.replay()?;
-//! let pressure = replay.pressure_at(&at_100_newtons)?;
+//! let pressure = replay.fields_at(&at_100_newtons)?.pressure;
 //! # assert!(pressure.max() > 0.0);
 //!
 //! // And on to 600 N:
@@ -49,8 +48,10 @@ use crate::loading::{
     ContactRule, History, LoadingBuilder, LoadingEnd, LoadingState, Replayed, replay,
 };
 use crate::surface::HeightMap;
-use crate::updater::{ConjugateGradient, LinearUpdater};
-use crate::{ContactTarget, Error, Grid, LoadingSolver, composite_modulus, plane_strain_modulus};
+use crate::updater::ConjugateGradient;
+use crate::{
+    ContactTarget, Error, Grid, LoadingPath, LoadingSolver, composite_modulus, plane_strain_modulus,
+};
 
 /// A path as a record. See the [module](self).
 #[derive(Debug, Clone)]
@@ -130,7 +131,7 @@ impl LoadingRecord {
     ///
     /// [`Error::StateNotReached`] if the last state lies beyond the present one of the path, and those of
     /// [`Self::from_parts`].
-    pub fn new<U: LinearUpdater>(path: &LoadingSolver<U>, history: History) -> Result<Self, Error> {
+    pub fn new(path: &LoadingPath, history: History) -> Result<Self, Error> {
         let present = path.state().map_or(0, |state| state.step);
         if let Some(step) = history.states().last().map(|state| state.step)
             && step > present
@@ -277,7 +278,7 @@ impl LoadingRecord {
     }
 
     /// The path once more, behind its last state, with the default updater: to where it was to end, or beyond, by
-    /// [`LoadingSolver::continue_to`]. See [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume) for
+    /// [`LoadingPath::continue_to`]. See [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume) for
     /// what it costs, and for other updaters.
     ///
     /// The same nodes touch next as on a path that was never interrupted. A record [made](Self::new) at the last state of its path knows where
@@ -319,12 +320,12 @@ impl LoadingRecord {
     }
 
     /// The path as it was, for the fields of its states
-    /// ([`LoadingSolver::pressure_at`]): each is one solution on a known contact set, without a factor.
+    /// ([`LoadingPath::fields_at`]): each is one solution on a known contact set, without a factor.
     ///
     /// # Errors
     ///
     /// Those of [`Self::make_kernel`] and of [`LoadingBuilder::build`](crate::loading::LoadingBuilder::build).
-    pub fn replay(&self) -> Result<LoadingSolver<ConjugateGradient>, Error> {
+    pub fn replay(&self) -> Result<LoadingPath, Error> {
         self.replay_on(&self.make_kernel()?)
     }
 
@@ -333,13 +334,10 @@ impl LoadingRecord {
     /// # Errors
     ///
     /// [`Error::WrongKernel`] if it is another one, and as above.
-    pub fn replay_on(
-        &self,
-        kernel: &dyn InfluenceKernel,
-    ) -> Result<LoadingSolver<ConjugateGradient>, Error> {
+    pub fn replay_on(&self, kernel: &dyn InfluenceKernel) -> Result<LoadingPath, Error> {
         let hardness = self.hardness_map()?;
         let builder = self.builder(kernel, hardness.as_ref());
-        let mut solver = builder.updater(ConjugateGradient::new()).build()?;
+        let mut solver = builder.updater(ConjugateGradient::new()).build()?.into_path();
         self.kernel.check(solver.problem().table())?;
         solver.restore(&self.history)?;
         Ok(solver)

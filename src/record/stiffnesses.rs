@@ -269,7 +269,7 @@ mod tests {
                         builder = builder.hardness(hardness);
                     }
                     let mut path = builder.build()?;
-                    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+                    let history = path.run()?;
                     let record = LoadingRecord::new(&path, history)?;
                     let context = format!("{:?} {hardness:?} {area}", record.kernel.origin);
                     assert!(with_last(&record, |_| {}).is_ok(), "{context}");

@@ -6,8 +6,7 @@ use super::Friction;
 use super::state::{SlipState, borne};
 use crate::bed::{Bed, BedState, Superposition};
 use crate::kernel::Theory;
-use crate::updater::LinearUpdater;
-use crate::{Error, LoadingSolver, SlipError};
+use crate::{Error, LoadingPath, SlipError};
 
 /// A contact under any history of the load P and the tangential load T, by steps that are linear in both.
 ///
@@ -30,7 +29,7 @@ use crate::{Error, LoadingSolver, SlipError};
 /// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 ///     .max_load(500.0)
 ///     .build()?;
-/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// let history = path.run()?;
 /// let bed = Bed::new(&history)?;
 ///
 /// let mut joint = SlipHistory::new(&bed, Friction::new(0.3, 1.2)?);
@@ -182,10 +181,7 @@ impl<'a> SlipHistory<'a> {
     /// # Errors
     ///
     /// Those of [`Superposition::pressure`].
-    pub fn traction<U: LinearUpdater>(
-        &self,
-        path: &mut LoadingSolver<U>,
-    ) -> Result<DMatrix<f64>, Error> {
+    pub fn traction(&self, path: &mut LoadingPath) -> Result<DMatrix<f64>, Error> {
         self.superposition()?.pressure(self.bed, path)
     }
 

@@ -21,7 +21,6 @@
 //!
 //! ```
 //! use asperity::bed::Bed;
-//! use asperity::loading::History;
 //! use asperity::slip::{Friction, PartialSlip};
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 //!
@@ -30,7 +29,7 @@
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 //!     .max_load(500.0)
 //!     .build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //!
 //! let bed = Bed::new(&history)?;
 //! let steel = (210e9, 0.3);

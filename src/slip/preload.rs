@@ -8,8 +8,7 @@ use super::Friction;
 use super::state::{SlipState, borne};
 use crate::bed::{Bed, BedState};
 use crate::kernel::Theory;
-use crate::updater::LinearUpdater;
-use crate::{Error, LoadingSolver, SlipError};
+use crate::{Error, LoadingPath, SlipError};
 
 /// A joint under a constant load P: what a tangential load does to it. See the [module](super).
 ///
@@ -236,10 +235,10 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::monotone`] and of [`LoadingSolver::pressure_at`].
-    pub fn traction<U: LinearUpdater>(
+    /// Those of [`Self::monotone`] and of [`LoadingPath::fields_at`].
+    pub fn traction(
         &self,
-        path: &mut LoadingSolver<U>,
+        path: &mut LoadingPath,
         tangential_load: f64,
     ) -> Result<DMatrix<f64>, Error> {
         let stick = self.stick(tangential_load)?;
@@ -254,15 +253,15 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::monotone`] and of [`LoadingSolver::gap_at`].
-    pub fn slip<U: LinearUpdater>(
+    /// Those of [`Self::monotone`] and of [`LoadingPath::fields_at`].
+    pub fn slip(
         &self,
-        path: &mut LoadingSolver<U>,
+        path: &mut LoadingPath,
         tangential_load: f64,
     ) -> Result<DMatrix<f64>, Error> {
         let stick = self.stick(tangential_load)?;
         let zones = self.zones(path, tangential_load)?;
-        let gap = path.gap_at(&self.bed.path_state(stick.load)?)?;
+        let gap = path.fields_at(&self.bed.path_state(stick.load)?)?.gap;
         let scale = tangential_load.signum() * self.friction.displacement_per_approach();
         Ok(gap.zip_map(&zones, |gap, zone| match zone {
             SlipZone::Slip => scale * gap.max(0.0),
@@ -274,10 +273,10 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::monotone`] and of [`LoadingSolver::contact_map_at`].
-    pub fn zones<U: LinearUpdater>(
+    /// Those of [`Self::monotone`] and of [`LoadingPath::contact_map_at`].
+    pub fn zones(
         &self,
-        path: &LoadingSolver<U>,
+        path: &LoadingPath,
         tangential_load: f64,
     ) -> Result<DMatrix<SlipZone>, Error> {
         let stick = self.stick(tangential_load)?;
@@ -295,10 +294,10 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::slip`] and of [`LoadingSolver::pressure_at`].
-    pub fn friction_work<U: LinearUpdater>(
+    /// Those of [`Self::slip`] and of [`LoadingPath::fields_at`].
+    pub fn friction_work(
         &self,
-        path: &mut LoadingSolver<U>,
+        path: &mut LoadingPath,
         amplitude: f64,
     ) -> Result<DMatrix<f64>, Error> {
         let amplitude = Error::require_positive("amplitude of the tangential load", amplitude)?;

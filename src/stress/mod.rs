@@ -10,7 +10,6 @@
 //! | a volume for ParaView | [`Subsurface::write_volume`] |
 //!
 //! ```
-//! use asperity::loading::History;
 //! use asperity::stress::{Measure, Subsurface};
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 //!
@@ -19,9 +18,9 @@
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 //!     .max_load(500.0)
 //!     .build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let steel = Subsurface::of(&half_space, 0.3)?;
-//! let greatest = steel.survey(&path.pressure()?, None)?.greatest(Measure::VonMises);
+//! let greatest = steel.survey(&path.fields()?.pressure, None)?.greatest(Measure::VonMises);
 //! println!("{} Pa at a depth of {} m", greatest.value, greatest.depth);
 //! if let Some(first) = steel.first_yield(&mut path, &history, 1e9)? {
 //!     println!("yields first under {} N", first.state.contact.load);

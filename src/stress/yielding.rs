@@ -4,8 +4,7 @@ use super::body::Subsurface;
 use super::survey::Greatest;
 use super::tensor::Measure;
 use crate::loading::History;
-use crate::updater::LinearUpdater;
-use crate::{ContactTarget, Error, LoadingSolver, LoadingState};
+use crate::{ContactTarget, Error, LoadingPath, LoadingState};
 
 /// The state of an elastic path at which a body begins to yield.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,10 +35,10 @@ impl Subsurface {
     /// # Errors
     ///
     /// [`Error::NotPositive`] for the yield stress; those of [`Self::survey`] and
-    /// [`LoadingSolver::pressure_at`](LoadingSolver::pressure_at).
-    pub fn first_yield<U: LinearUpdater>(
+    /// [`LoadingPath::fields_at`](LoadingPath::fields_at).
+    pub fn first_yield(
         &self,
-        path: &mut LoadingSolver<U>,
+        path: &mut LoadingPath,
         history: &History,
         yield_stress: f64,
     ) -> Result<Option<FirstYield>, Error> {

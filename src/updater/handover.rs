@@ -1,8 +1,6 @@
 //! The default: a factor, which the path may give up for iterations.
 
-use super::{
-    Left, LinearUpdater, Method, RecursiveCholesky, Schur, Solution, WindowFactor, forward_verbs,
-};
+use super::{Left, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor, forward_verbs};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
@@ -70,9 +68,5 @@ impl LinearUpdater for Handover {
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         self.0.bytes(contact, watched)
-    }
-
-    fn method(&self) -> Method {
-        Method::FactorWhileItPays
     }
 }

@@ -6,77 +6,60 @@ use super::{Kept, Schur, Solution};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
-/// How a path uses an updater.
-#[derive(Debug)]
-#[doc(hidden)]
-pub enum Method {
-    /// For everything.
-    Factor,
-    /// For everything, as long as that is cheaper than iterations and fits the memory budget.
-    FactorWhileItPays,
-    /// Not at all: these iterations take its place.
-    Iterations(Box<dyn Iterations>),
-}
-
 /// A solution, and the displacements of all nodes that it causes.
 #[derive(Debug, Default)]
-#[doc(hidden)]
-pub struct Solved {
-    pub solution: Solution,
+pub(crate) struct Solved {
+    pub(crate) solution: Solution,
     /// Under the pressure \[m\], and under the rate.
-    pub displacement: [Vec<f64>; 2],
+    pub(crate) displacement: [Vec<f64>; 2],
 }
 
 /// What nodes that have yielded displace.
 #[derive(Debug, Clone, Copy)]
-#[doc(hidden)]
-pub struct Beside<'a> {
+pub(crate) struct Beside<'a> {
     /// Under a pressure of 1 on each of them \[m/Pa\], and under their hardness \[m\].
-    pub unit: &'a [f64],
-    pub load: &'a [f64],
+    pub(crate) unit: &'a [f64],
+    pub(crate) load: &'a [f64],
     /// The hardness of all nodes, if that is one.
-    pub hardness: Option<f64>,
+    pub(crate) hardness: Option<f64>,
     /// The row sum of all nodes of the surface, if that is one.
-    pub row_sum: Option<f64>,
+    pub(crate) row_sum: Option<f64>,
 }
 
 /// A state behind the last solution, when nodes may have joined and others yielded.
 #[derive(Debug, Clone, Copy)]
-#[doc(hidden)]
-pub struct Behind<'a> {
+pub(crate) struct Behind<'a> {
     /// Of the nodes that have not yielded: the displacement under the others is in its gap.
-    pub problem: &'a Problem,
+    pub(crate) problem: &'a Problem,
     /// Those in contact: first the ones that were there before, in the same order.
-    pub contact: &'a ContactSequence,
+    pub(crate) contact: &'a ContactSequence,
     /// Nodes that have yielded since, and their pressure.
-    pub yielded: &'a [(usize, f64)],
+    pub(crate) yielded: &'a [(usize, f64)],
     /// What that displaces: nothing if it is empty.
-    pub load: &'a [f64],
-    pub approach: f64,
+    pub(crate) load: &'a [f64],
+    pub(crate) approach: f64,
 }
 
 impl<'a> Behind<'a> {
     /// A contact at an approach, where no node has yielded since.
     #[must_use]
-    pub fn on(problem: &'a Problem, contact: &'a ContactSequence, approach: f64) -> Self {
+    pub(crate) fn on(problem: &'a Problem, contact: &'a ContactSequence, approach: f64) -> Self {
         Self { problem, contact, yielded: &[], load: &[], approach }
     }
 }
 
 /// What iterations say of proposed nodes.
 #[derive(Debug, Default)]
-#[doc(hidden)]
-pub struct Proposal {
+pub(crate) struct Proposal {
     /// Displacement under the solution and under its rate of each node out of contact; pressure and rate of each in contact.
-    pub lines: Vec<[f64; 2]>,
+    pub(crate) lines: Vec<[f64; 2]>,
     /// What a pressure on a node out of contact, or a gap of one in it, adds to sums over all nodes: of gaps out of contact, of plastic
     /// depths, and of these times the hardness.
-    pub sums: Vec<[f64; 3]>,
+    pub(crate) sums: Vec<[f64; 3]>,
 }
 
 /// Iterations on a contact that grows.
-#[doc(hidden)]
-pub trait Iterations: Debug + Send + Sync {
+pub(crate) trait Iterations: Debug + Send + Sync {
     /// Greatest gap in contact that a solution leaves, relative to the approach.
     fn tolerance(&self) -> f64;
 

@@ -11,7 +11,7 @@ use crate::{Error, Problem};
 ///
 /// [`Error::MemoryBudget`], [`Error::FactorizationFailed`], those of the contact and of the updater.
 pub(crate) fn join_all(
-    updater: &mut (impl LinearUpdater + ?Sized),
+    updater: &mut dyn LinearUpdater,
     problem: &Problem,
     contact: &mut ContactSequence,
     nodes: &[usize],

@@ -10,7 +10,7 @@
 /// Values on the contact are in the order of the indices of its nodes.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[doc(hidden)]
-pub struct Kept {
+pub(crate) struct Kept {
     /// Greatest gap in contact that solutions leave, relative to the approach.
     pub tolerance: f64,
     /// Where the solution is, and how far the approach may go on with its rate \[m\].
@@ -42,7 +42,7 @@ pub struct Kept {
 /// What iterations go on from beside nodes that have yielded.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[doc(hidden)]
-pub struct KeptBeside {
+pub(crate) struct KeptBeside {
     /// How many of the proposed nodes, the first ones, were out of contact.
     pub outside: usize,
     /// The nodes that have yielded since they were proposed, and their pressures \[Pa\].
@@ -61,7 +61,7 @@ pub struct KeptBeside {
 /// Displacements do not follow from pressures bit for bit: they have been followed from one solution to the next.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[doc(hidden)]
-pub struct KeptField {
+pub(crate) struct KeptField {
     pub pressure: Vec<f64>,
     /// Empty if it is not known.
     pub displacement: Vec<f64>,

@@ -15,8 +15,6 @@
 //! Every updater answers exactly. Iterations offer a path more than that, cheap Schur complements that are nearly
 //! exact: with [`ConjugateGradient`] a path uses these and corrects them ([`loading`](crate::loading)).
 
-#[cfg(test)]
-pub(crate) mod altered;
 mod check;
 mod cholesky;
 mod conjugate_gradient;
@@ -27,6 +25,8 @@ mod join;
 mod kept;
 mod schur;
 mod solution;
+#[cfg(test)]
+pub(crate) mod test_altered;
 mod tuning;
 mod window_factor;
 
@@ -37,7 +37,6 @@ pub use cholesky::RecursiveCholesky;
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;
-pub use iterations::Method;
 pub(crate) use iterations::{Behind, Beside, Iterations, Proposal, Solved};
 pub(crate) use join::join_all;
 pub(crate) use kept::{Kept, KeptBeside, KeptField};
@@ -45,6 +44,9 @@ pub use schur::Schur;
 pub use solution::Solution;
 pub(crate) use tuning::JOINED;
 pub use window_factor::WindowFactor;
+
+use std::any::Any;
+use std::fmt;
 
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
@@ -63,6 +65,8 @@ pub struct Left {
 /// The path owns the order of contact and passes it along; an updater keeps whatever it needs to answer
 /// quickly. [`ContactSequence::revision`] says whether a cache still belongs to it. An updater starts with
 /// no node in contact.
+///
+/// A path holds its updater as a `dyn LinearUpdater`, and may be sent to another thread with it: so it borrows nothing.
 ///
 /// Here is one that keeps nothing and factors the whole matrix whenever it is asked:
 ///
@@ -149,7 +153,7 @@ pub struct Left {
 /// # Ok(())
 /// # }
 /// ```
-pub trait LinearUpdater {
+pub trait LinearUpdater: Any + Send + Sync {
     /// Eliminates the contact I from the system bordered by the watched nodes P, none of them in contact:
     ///
     /// ```math
@@ -297,11 +301,11 @@ pub trait LinearUpdater {
         let _ = (problem, bytes);
         Ok(())
     }
+}
 
-    /// How a path uses the updater; by default for all that it asks.
-    #[doc(hidden)]
-    fn method(&self) -> Method {
-        Method::Factor
+impl fmt::Debug for dyn LinearUpdater {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("LinearUpdater")
     }
 }
 
@@ -378,15 +382,11 @@ macro_rules! forward_verbs {
 }
 use forward_verbs;
 
-impl<U: LinearUpdater + ?Sized> LinearUpdater for Box<U> {
+impl LinearUpdater for Box<dyn LinearUpdater> {
     forward_verbs!(as_mut);
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         (**self).bytes(contact, watched)
-    }
-
-    fn method(&self) -> Method {
-        (**self).method()
     }
 }
 

@@ -66,7 +66,7 @@ fn peaks_of_the_border_are_noticed() -> Result<(), Error> {
         let approach = radius * radius / 100.0;
         let solved = solver.solve(hertz.load(approach))?;
         let on = (&grid, Boundary::Free);
-        let found = Warning::of_contact(&solved.pressure, &solved.contact_map, on)?;
+        let found = Warning::of_contact(&solved.fields.pressure, &solved.fields.contact_map, on)?;
         assert_eq!(found.len(), usize::from(is_peak), "{part} {found:?}");
         // The edge nearly doubles the pressure; inside it is that of Hertz, of a contact that loses a tenth of its load there.
         for warning in found {
@@ -240,7 +240,7 @@ fn contacts_of_few_nodes_are_noticed() -> Result<(), Error> {
         let ball = ball(&grid, 100.0, offset)?;
         let mut path = LoadingSolver::builder(&ball, &half_space).max_nodes(150).build()?;
         while let Some(state) = path.next().transpose()? {
-            let (pressure, map) = (path.pressure()?, path.contact_map());
+            let (pressure, map) = (path.fields()?.pressure, path.contact_map());
             let found = Warning::of_contact(&pressure, &map, (&grid, Boundary::Free))?;
             let is_small = |warning: &Warning| matches!(warning, Warning::SmallPatches { .. });
             let is_noticed = found.iter().any(is_small);

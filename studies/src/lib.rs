@@ -1,4 +1,4 @@
-//! What several studies need: fits, spreads, sections of pages, the paper's loading path, and where time and memory went.
+//! What several studies need: fits, spreads, sections of pages, main functions, the paper's loading path, and where time and memory went.
 
 pub mod contact_area;
 pub mod findings;
@@ -9,3 +9,4 @@ pub mod peak_memory;
 pub mod phases;
 pub mod smallest_gap;
 pub mod spread;
+pub mod study;

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use asperity_cli::outcome::Failure;
+use asperity_cli::outcome::{Failure, Outcome};
 
 /// A section of a page, between markers that name the study that writes it.
 pub struct Section<'a> {
@@ -32,6 +32,17 @@ impl Section<'_> {
         publish()
             .map_err(|error| Failure::new(format!("cannot write {}", page.display()), error))?;
         Ok(page.to_path_buf())
+    }
+
+    /// Prints the text, and puts it into a page if there is one.
+    pub fn show(&self, page: Option<&Path>) -> Result<(), Failure> {
+        println!("{}", self.text);
+        let Some(page) = page else {
+            return Ok(());
+        };
+        let mut outcome = Outcome::default();
+        outcome.written(self.publish(page));
+        outcome.finish()
     }
 
     fn merged(&self, present: &str) -> String {

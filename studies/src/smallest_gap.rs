@@ -4,11 +4,11 @@ use asperity::contact::{ContactSequence, ContactState};
 use asperity::convolution::Convolution;
 use asperity::loading::ContactEvent;
 use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor};
-use asperity::{Boundary, Error, InfluenceKernel, LoadingSolver, LoadingState, Problem, Surface};
+use asperity::{Boundary, Error, InfluenceKernel, LoadingPath, LoadingState, Problem, Surface};
 use nalgebra::DMatrix;
 
 /// A loading path by either rule, and the fields of its present state.
-pub trait LoadingPath: Iterator<Item = Result<LoadingState, Error>> {
+pub trait EitherPath: Iterator<Item = Result<LoadingState, Error>> {
     /// The contact problem.
     fn problem(&self) -> &Problem;
 
@@ -50,25 +50,25 @@ pub struct Extremes {
     pub gap: f64,
 }
 
-impl<U: LinearUpdater> LoadingPath for LoadingSolver<U> {
+impl EitherPath for LoadingPath {
     fn problem(&self) -> &Problem {
-        LoadingSolver::problem(self)
+        Self::problem(self)
     }
 
     fn contact_order(&self) -> Vec<usize> {
-        LoadingSolver::contact_order(self)
+        Self::contact_order(self)
     }
 
     fn contact_map(&self) -> DMatrix<bool> {
-        LoadingSolver::contact_map(self)
+        Self::contact_map(self)
     }
 
     fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
-        LoadingSolver::pressure(self)
+        Ok(self.fields()?.pressure)
     }
 
     fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
-        LoadingSolver::gap(self)
+        Ok(self.fields()?.gap)
     }
 }
 
@@ -231,7 +231,7 @@ impl<U: LinearUpdater> Iterator for SmallestGap<U> {
     }
 }
 
-impl<U: LinearUpdater> LoadingPath for SmallestGap<U> {
+impl<U: LinearUpdater> EitherPath for SmallestGap<U> {
     fn problem(&self) -> &Problem {
         &self.problem
     }

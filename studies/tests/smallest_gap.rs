@@ -9,7 +9,7 @@ use asperity::updater::ConjugateGradient;
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq,
 };
-use asperity_studies::smallest_gap::{Extremes, LoadingPath, SmallestGap};
+use asperity_studies::smallest_gap::{EitherPath, Extremes, SmallestGap};
 use asperity_testing::dense::influence_matrix;
 use nalgebra::{DMatrix, DVector};
 
@@ -124,7 +124,7 @@ struct Faults {
     backward: usize,
 }
 
-fn faults(mut path: impl LoadingPath) -> Faults {
+fn faults(mut path: impl EitherPath) -> Faults {
     let mut faults = Faults::default();
     let mut approach = 0.0;
     while let Some(state) = path.next() {
@@ -158,7 +158,7 @@ fn the_papers_rule_gives_negative_pressures() {
         assert!(paper.backward > 10, "{paper:?}");
 
         let exact = LoadingSolver::builder(&heights, &kernel).max_nodes(most_nodes).build();
-        let exact = faults(exact.unwrap());
+        let exact = faults(exact.unwrap().into_path());
         assert_eq!((exact.negative_pressure, exact.overlap, exact.backward), (0, 0, 0));
         // The promise of the crate.
         assert!(exact.worst_pressure >= -1e-12 && exact.worst_gap >= -1e-12, "{exact:?}");

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{Left, LinearUpdater, Method, Schur, Solution, WindowFactor};
+use asperity::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor};
 use asperity::{Error, Problem};
 
 /// A call of a [`LinearUpdater`] that can fail, with the place of its answer.
@@ -76,7 +76,7 @@ impl Call<'_> {
     /// # Errors
     ///
     /// Those of the updater.
-    pub fn ask<U: LinearUpdater + ?Sized>(&mut self, updater: &mut U) -> Result<(), Error> {
+    pub fn ask(&mut self, updater: &mut dyn LinearUpdater) -> Result<(), Error> {
         match self {
             Self::Watch { problem, contact, nodes, schur } => {
                 updater.watch(problem, contact, nodes, schur)
@@ -96,29 +96,28 @@ impl Call<'_> {
     }
 }
 
-type OnCall<'a, U> = Box<dyn FnMut(&mut U, &mut Call<'_>) -> Result<(), Error> + 'a>;
-type OnQuestion<'a, U, A, T> = Box<dyn Fn(&U, A) -> T + 'a>;
+type OnCall<U> = Box<dyn FnMut(&mut U, &mut Call<'_>) -> Result<(), Error> + Send + Sync>;
+type OnBytes<U> = Box<dyn Fn(&U, (usize, usize)) -> usize + Send + Sync>;
 
 /// An updater that passes on all that it is asked, unless a closure does something else.
 ///
-/// What the closures have seen can be told through `state`, of which they then hold a part: an `Rc` of cells, for example.
-pub struct Altered<'a, U, S = ()> {
+/// What the closures have seen can be told through `state`, of which they then hold a part: an `Arc` of what it counts, for example.
+pub struct Altered<U, S = ()> {
     /// What is to be looked at while a path holds the updater.
     pub state: S,
     inner: U,
-    on_call: OnCall<'a, U>,
-    on_bytes: OnQuestion<'a, U, (usize, usize), usize>,
-    on_method: OnQuestion<'a, U, (), Method>,
+    on_call: OnCall<U>,
+    on_bytes: OnBytes<U>,
 }
 
-impl<'a, U: LinearUpdater + 'a> Altered<'a, U> {
+impl<U: LinearUpdater> Altered<U> {
     /// As `inner` is.
     pub fn new(inner: U) -> Self {
         Self::with_state(inner, ())
     }
 }
 
-impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
+impl<U: LinearUpdater, S> Altered<U, S> {
     /// As `inner` is, with something to look at.
     pub fn with_state(inner: U, state: S) -> Self {
         Self {
@@ -126,7 +125,6 @@ impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
             inner,
             on_call: Box::new(|inner, call| call.ask(inner)),
             on_bytes: Box::new(|inner, (contact, watched)| inner.bytes(contact, watched)),
-            on_method: Box::new(|inner, ()| inner.method()),
         }
     }
 
@@ -134,7 +132,7 @@ impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
     #[must_use]
     pub fn on_call(
         mut self,
-        on_call: impl FnMut(&mut U, &mut Call<'_>) -> Result<(), Error> + 'a,
+        on_call: impl FnMut(&mut U, &mut Call<'_>) -> Result<(), Error> + Send + Sync + 'static,
     ) -> Self {
         self.on_call = Box::new(on_call);
         self
@@ -142,15 +140,11 @@ impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
 
     /// Answers so to [`LinearUpdater::bytes`] of contact and watched nodes.
     #[must_use]
-    pub fn on_bytes(mut self, on_bytes: impl Fn(&U, (usize, usize)) -> usize + 'a) -> Self {
+    pub fn on_bytes(
+        mut self,
+        on_bytes: impl Fn(&U, (usize, usize)) -> usize + Send + Sync + 'static,
+    ) -> Self {
         self.on_bytes = Box::new(on_bytes);
-        self
-    }
-
-    /// Answers so to `LinearUpdater::method`.
-    #[must_use]
-    pub fn on_method(mut self, on_method: impl Fn(&U) -> Method + 'a) -> Self {
-        self.on_method = Box::new(move |inner, ()| on_method(inner));
         self
     }
 
@@ -159,14 +153,14 @@ impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
     }
 }
 
-impl<U: fmt::Debug, S: fmt::Debug> fmt::Debug for Altered<'_, U, S> {
+impl<U: fmt::Debug, S: fmt::Debug> fmt::Debug for Altered<U, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = f.debug_struct("Altered");
         shown.field("inner", &self.inner).field("state", &self.state).finish_non_exhaustive()
     }
 }
 
-impl<'a, U: LinearUpdater + 'a, S> LinearUpdater for Altered<'a, U, S> {
+impl<U: LinearUpdater, S: Send + Sync + 'static> LinearUpdater for Altered<U, S> {
     fn watch(
         &mut self,
         problem: &Problem,
@@ -236,9 +230,5 @@ impl<'a, U: LinearUpdater + 'a, S> LinearUpdater for Altered<'a, U, S> {
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         (self.on_bytes)(&self.inner, (contact, watched))
-    }
-
-    fn method(&self) -> Method {
-        (self.on_method)(&self.inner, ())
     }
 }

@@ -25,7 +25,7 @@ fn sections(surface: &dyn Surface, grid: Grid, from: f64, fraction: f64) -> Vec<
     let sections = (0..SAMPLES).map(|sample| {
         let part = from + (1.0 - from) * (sample as f64 + 0.5) / SAMPLES as f64;
         let state = history.at_load(part * last).unwrap();
-        let pressure = path.pressure_at(&state).unwrap();
+        let pressure = path.fields_at(&state).unwrap().pressure;
         pressure.column(grid.ny() / 2).into_owned()
     });
     sections.collect()

@@ -70,7 +70,7 @@ impl Run {
         for sample in 0..SAMPLES {
             let part = (sample as f64 + 0.5) / SAMPLES as f64;
             let state = self.history.at_load(load * (0.75 + 0.5 * part)).unwrap();
-            let pressure = self.path.pressure_at(&state).unwrap();
+            let pressure = self.path.fields_at(&state).unwrap().pressure;
             for (sum, error) in sums.iter_mut().zip(errors(state, &pressure)) {
                 *sum += error / SAMPLES as f64;
             }
@@ -149,7 +149,7 @@ fn sphere_is_hertzian() {
 
             let state = run.path.state().unwrap();
             let exact = hertz.approach_at_load(state.contact.load);
-            let displacement = run.path.displacement().unwrap();
+            let displacement = run.path.fields().unwrap().displacement;
             let mut worst = 0.0_f64;
             for ix in 0..grid.nx() {
                 for iy in 0..grid.ny() {

@@ -6,7 +6,7 @@ use asperity_testing::close::relative;
 /// Checks the conditions of contact against the solution's own fields, its certificate against the
 /// tolerance, and its scalars against the fields.
 pub fn check(solver: &FixedLoadSolver, solution: &FixedLoadSolution, tolerance: f64) {
-    let (state, certificate) = (&solution.state, &solution.certificate);
+    let (state, certificate) = (&solution.contact, &solution.certificate);
     let context = format!("{state:?} {certificate:?}");
     assert!(certificate.complementarity <= tolerance, "{context}");
     assert!(certificate.least_gap >= -tolerance, "{context}");
@@ -20,8 +20,8 @@ pub fn check(solver: &FixedLoadSolver, solution: &FixedLoadSolution, tolerance: 
     let nodes = grid.nodes();
     let (mut count, mut sum, mut open) = (0, 0.0, 0.0);
     for node in 0..nodes {
-        let (pressure, gap) = (solution.pressure[node], solution.gap[node]);
-        let in_contact = solution.contact_map[node];
+        let (pressure, gap) = (solution.fields.pressure[node], solution.fields.gap[node]);
+        let in_contact = solution.fields.contact_map[node];
         assert!(pressure >= 0.0, "node {node}: {pressure}");
         assert_eq!(in_contact, pressure > 0.0 || gap <= 0.0, "node {node}");
         if in_contact {

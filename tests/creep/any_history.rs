@@ -2,7 +2,6 @@
 
 use asperity::bed::Bed;
 use asperity::creep::{Control, Prony, ViscoelasticBed};
-use asperity::loading::History;
 use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral};
 use proptest::prelude::*;
 
@@ -27,7 +26,7 @@ fn compare(
 ) -> Seen {
     let heights = rough(&kernel.grid(), seed);
     let mut path = LoadingSolver::builder(&heights, kernel).build().unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     let bed = Bed::new(&history).unwrap();
     // In parts of the load and approach of the path at half contact.
     let half = history.events()[history.events().len() / 2].contact;
@@ -168,7 +167,7 @@ fn a_step_that_is_too_long_is_halved() {
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     let heights = rough(&grid, 3);
     let mut path = LoadingSolver::builder(&heights, &kernel).build().unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     let bed = Bed::new(&history).unwrap();
     let body = Prony::relaxation(0.001, &[(1.0, 0.3), (1e-3, 0.699)]).unwrap();
     let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use asperity::bed::Bed;
-use asperity::creep::{Control, Corners, Creep, Prony, ViscoelasticBed};
+use asperity::creep::{Control, Creep, PiecewiseLinear, Prony, ViscoelasticBed};
 use asperity::loading::History;
 use asperity::{ContactEvent, ContactState, Grid, LoadingState};
 
@@ -32,7 +32,7 @@ fn a_long_path_is_evaluated_at_once() {
     let start = Instant::now();
     let bed = Bed::new(&history).unwrap();
     let body = Prony::shares(&[(0.1, 0.2), (1.0, 0.3), (30.0, 0.2)]).unwrap();
-    let load = Corners::ramp(0.25, 1.0).unwrap();
+    let load = PiecewiseLinear::ramp(0.25, 1.0).unwrap();
     let creep = Creep::new(&bed, &body, &load).unwrap();
     let times = creep.times();
     let curve: Vec<_> =

@@ -38,9 +38,9 @@ fn a_linear_contact_loses_what_its_compliance_says() {
         let amplitude = 2.0 * real.hypot(imaginary) / stiffness;
         // 400 straight pieces in place of a sine: (2π/400)²/6, and the extremes lie between steps.
         assert!(
-            (cycle.dissipated / lost - 1.0).abs() < 1e-4,
+            (cycle.dissipation / lost - 1.0).abs() < 1e-4,
             "{period}: {} {lost}",
-            cycle.dissipated
+            cycle.dissipation
         );
         assert!((cycle.approach_amplitude / amplitude - 1.0).abs() < 1e-4, "{period}");
         assert!(cycle.distance <= 1e-12, "{cycle:?}");
@@ -73,7 +73,7 @@ proptest! {
             contact.settle(load).unwrap();
             let settings = CycleSettings { steps, tolerance: 1e-4, most: 200 };
             let cycle = contact.cycle(load, part * load, 10_f64.powf(period), settings).unwrap();
-            (cycle.dissipated, cycle.amplitude * cycle.approach_amplitude)
+            (cycle.dissipation, cycle.amplitude * cycle.approach_amplitude)
         });
         let scale = lost[1].1;
         prop_assert!(lost[0].0 >= -1e-3 * scale && lost[1].0 >= -1e-3 * scale, "{:?}", lost);
@@ -180,7 +180,7 @@ fn check_steady(bed: &Bed, body: &Prony, load: f64, period: f64, cycles: usize) 
     let mut contact = ViscoelasticBed::new(bed, body).unwrap();
     contact.step(0.0, Control::Load(load)).unwrap();
     let found = contact.cycle(load, 0.5 * load, period, settings).unwrap();
-    let off = (found.dissipated - truth.0).abs() / (0.5 * load * truth.1);
+    let off = (found.dissipation - truth.0).abs() / (0.5 * load * truth.1);
     let apart = (found.approach_amplitude / truth.1 - 1.0).abs();
     assert!(found.distance <= settings.tolerance, "{period}: {}", found.distance);
     // What truth and rounding leave is below 1e-7.

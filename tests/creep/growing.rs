@@ -1,7 +1,9 @@
 //! Growing contact in closed form, against the solver in steps of time and against itself.
 
 use asperity::bed::Bed;
-use asperity::creep::{Corners, Course, Creep, Prony, Relaxation, Steps, ViscoelasticBed};
+use asperity::creep::{
+    ControlHistory, Creep, PiecewiseLinear, Prony, Relaxation, Steps, ViscoelasticBed,
+};
 use asperity::loading::History;
 use asperity::surface::HeightMap;
 use asperity::{
@@ -57,7 +59,7 @@ fn pressures_of_the_solver_converge_to_the_closed_form() {
             1.6,
         ),
     ] {
-        let load = Corners::new(corners).unwrap();
+        let load = PiecewiseLinear::new(corners).unwrap();
         let creep = Creep::new(&bed, &body, &load).unwrap();
         let state = creep.at(end).unwrap();
         let truth = creep.pressure(end, usize::MAX).unwrap();
@@ -93,7 +95,8 @@ fn increments_carry_the_load() {
     let bed = Bed::new(&case.history).unwrap();
     let wide = Prony::shares(&[(1e-4, 0.2), (1e-2, 0.2), (1.0, 0.3), (1e3, 0.25)]).unwrap();
     let top = bed.loads()[8];
-    let load = Corners::ramp(top, 0.01).unwrap().hold(5.0).unwrap().to(1.3 * top, 2.0).unwrap();
+    let load =
+        PiecewiseLinear::ramp(top, 0.01).unwrap().hold(5.0).unwrap().to(1.3 * top, 2.0).unwrap();
     let load = load.jump(1.5 * top).unwrap();
     for body in [solid(), fluid(), wide] {
         let creep = Creep::new(&bed, &body, &load).unwrap();
@@ -116,9 +119,9 @@ fn events_have_their_times() {
     let bed = Bed::new(&case.history).unwrap();
     let top = bed.loads()[20];
     let histories = [
-        Corners::step(top).unwrap(),
-        Corners::ramp(top, 0.3).unwrap().hold(2.0).unwrap().jump(2.0 * top).unwrap(),
-        Corners::ramp(top, 1e-5).unwrap(),
+        PiecewiseLinear::step(top).unwrap(),
+        PiecewiseLinear::ramp(top, 0.3).unwrap().hold(2.0).unwrap().jump(2.0 * top).unwrap(),
+        PiecewiseLinear::ramp(top, 1e-5).unwrap(),
     ];
     for body in [solid(), fluid(), Prony::elastic(1.0).unwrap()] {
         for load in &histories {
@@ -154,12 +157,12 @@ fn the_bed_grows_as_the_closed_form_does() {
     let case = free();
     let bed = Bed::new(&case.history).unwrap();
     let top = bed.loads()[25];
-    let load = Corners::step(0.5 * top).unwrap().hold(0.7).unwrap().to(top, 0.4).unwrap();
+    let load = PiecewiseLinear::step(0.5 * top).unwrap().hold(0.7).unwrap().to(top, 0.4).unwrap();
     for body in [solid(), fluid()] {
         let creep = Creep::new(&bed, &body, &load).unwrap();
         let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
         let times = Steps::default().times(&body, &load, 3.0).unwrap();
-        let states = contact.follow(&Course::Load(load.clone()), &times).unwrap();
+        let states = contact.follow(&ControlHistory::Load(load.clone()), &times).unwrap();
         assert_eq!(states.len(), times.len());
         for (state, time) in states.iter().zip(times) {
             let expected = creep.at(time).unwrap();
@@ -186,7 +189,7 @@ fn loads_relax_at_a_given_approach() {
     let bed = Bed::new(&case.history).unwrap();
     let approach = bed.approaches()[60];
     let body = solid();
-    let held = Relaxation::new(&bed, &body, &Corners::step(approach).unwrap()).unwrap();
+    let held = Relaxation::new(&bed, &body, &PiecewiseLinear::step(approach).unwrap()).unwrap();
     for time in [0.0, 0.05, 1.0, 20.0] {
         let state = held.at(time).unwrap();
         let expected = bed.loads()[60] * body.relaxation_at(time);
@@ -205,7 +208,7 @@ fn loads_relax_at_a_given_approach() {
         (0.8, 0.7 * approach),
         (1.5, between),
     ];
-    let course = Corners::new(corners).unwrap();
+    let course = PiecewiseLinear::new(corners).unwrap();
     let growing = Relaxation::new(&bed, &body, &course).unwrap();
     assert_eq!(growing.recession(), None);
     let apart = growing.at(0.1).unwrap();
@@ -241,7 +244,7 @@ fn loads_relax_at_a_given_approach() {
     for (time, knot) in times.iter().zip(bed.approaches()).skip(1) {
         assert!(course.value_at(*time) >= knot * (1.0 - 1e-12));
     }
-    let falling = Corners::ramp(approach, 1.0).unwrap().to(0.5 * approach, 1.0).unwrap();
+    let falling = PiecewiseLinear::ramp(approach, 1.0).unwrap().to(0.5 * approach, 1.0).unwrap();
     let falling = Relaxation::new(&bed, &body, &falling).unwrap();
     assert_eq!(falling.recession(), Some(1.0));
     assert!(falling.at(1.0).is_ok());
@@ -262,7 +265,7 @@ fn other_half_spaces() {
         let case = case(kernel, 9);
         let bed = Bed::new(&case.history).unwrap();
         let body = solid();
-        let load = Corners::step(bed.loads()[12]).unwrap();
+        let load = PiecewiseLinear::step(bed.loads()[12]).unwrap();
         let creep = Creep::new(&bed, &body, &load).unwrap();
         let mut solver = Stepping::new(&case.heights, &*case.kernel, &body);
         solver.step(0.0, To::Load(bed.loads()[12]));
@@ -283,13 +286,13 @@ fn full_contact_stays() {
     let case = case(Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()), 2);
     let bed = Bed::new(&case.history).unwrap();
     let last = bed.last_load();
-    let creep = Creep::new(&bed, &solid(), &Corners::step(0.5 * last).unwrap()).unwrap();
+    let creep = Creep::new(&bed, &solid(), &PiecewiseLinear::step(0.5 * last).unwrap()).unwrap();
     let state = creep.at(1e3).unwrap();
     assert!(state.effective_load > last);
     assert_eq!((state.contact_nodes, state.contact_area_fraction), (64, 1.0));
     assert_eq!(creep.times().len(), 64);
     let mut contact = ViscoelasticBed::new(&bed, &solid()).unwrap();
-    let course = Course::Load(Corners::step(0.5 * last).unwrap());
+    let course = ControlHistory::Load(PiecewiseLinear::step(0.5 * last).unwrap());
     let stepped = contact.follow(&course, &[0.0, 0.1, 1.0, 10.0, 1e3]).unwrap();
     let stepped = stepped.last().unwrap();
     assert_eq!(stepped.contact_nodes, 64);
@@ -309,7 +312,7 @@ fn the_end_of_the_path_has_a_time() {
     let history: History = path.collect::<Result<_, _>>().unwrap();
     let bed = Bed::new(&history).unwrap();
     let load = 0.5 * bed.last_load();
-    let creep = Creep::new(&bed, &fluid(), &Corners::step(load).unwrap()).unwrap();
+    let creep = Creep::new(&bed, &fluid(), &PiecewiseLinear::step(load).unwrap()).unwrap();
     let Err(Error::Creep(CreepError::PathEnds { until, path_ends, effective_load, .. })) =
         creep.at(100.0)
     else {
@@ -320,7 +323,8 @@ fn the_end_of_the_path_has_a_time() {
     assert!((creep.effective_load(until) / path_ends - 1.0).abs() < 1e-13);
     assert_eq!(creep.at(until * (1.0 - 1e-12)).unwrap().contact_nodes, 39);
     // A solid that the path is enough for for ever.
-    let weak = Creep::new(&bed, &solid(), &Corners::step(0.15 * bed.last_load()).unwrap()).unwrap();
+    let weak = Creep::new(&bed, &solid(), &PiecewiseLinear::step(0.15 * bed.last_load()).unwrap())
+        .unwrap();
     assert!(weak.at(f64::INFINITY).is_ok());
     assert_eq!(weak.time_of(bed.last_load()), None);
 }
@@ -351,7 +355,7 @@ proptest! {
             let last = all[all.len() - 1].0;
             all.push((if jumps { last } else { last + 10_f64.powf(duration) }, load));
         }
-        let load = Corners::new(all.clone()).unwrap();
+        let load = PiecewiseLinear::new(all.clone()).unwrap();
         let creep = Creep::new(&bed, &body, &load).unwrap();
         let until = creep.recession().map_or(1e6, |recession| recession.time);
         // Times behind each corner, on a fine logarithmic grid.

@@ -2,7 +2,8 @@
 
 use asperity::bed::Bed;
 use asperity::creep::{
-    Control, Corners, Course, Creep, Prony, Relaxation, Steps, Unloading, ViscoelasticBed,
+    Control, ControlHistory, Creep, PiecewiseLinear, Prony, Relaxation, Steps, Unloading,
+    ViscoelasticBed,
 };
 use asperity::loading::History;
 use asperity::{BedError, Boussinesq, CreepError, Error, Grid, LoadingSolver};
@@ -25,10 +26,10 @@ fn solid() -> Prony {
 fn loads_and_times_that_are_none() {
     let history = history(50);
     let bed = Bed::new(&history).unwrap();
-    let negative = Corners::new([(0.0, 1.0), (1.0, -1.0)]).unwrap();
+    let negative = PiecewiseLinear::new([(0.0, 1.0), (1.0, -1.0)]).unwrap();
     assert!(matches!(Creep::new(&bed, &solid(), &negative), Err(Error::OutOfRange { .. })));
     let load = bed.loads()[10];
-    let creep = Creep::new(&bed, &solid(), &Corners::step(load).unwrap()).unwrap();
+    let creep = Creep::new(&bed, &solid(), &PiecewiseLinear::step(load).unwrap()).unwrap();
     assert!(matches!(creep.at(f64::NAN), Err(Error::OutOfRange { .. })));
     let before = creep.at(-1.0).unwrap();
     assert_eq!((before.load, before.effective_load, before.contact_nodes), (0.0, 0.0, 1));
@@ -37,16 +38,17 @@ fn loads_and_times_that_are_none() {
     assert!(creep.pressure(1.0, 0).is_err());
     assert_eq!(creep.pressure(-1.0, 5).unwrap().load(), 0.0);
     assert_eq!(creep.time_of(f64::NAN), None);
-    let relaxation = Relaxation::new(&bed, &solid(), &Corners::step(-1.0).unwrap()).unwrap();
+    let relaxation =
+        Relaxation::new(&bed, &solid(), &PiecewiseLinear::step(-1.0).unwrap()).unwrap();
     assert_eq!(relaxation.at(1.0).unwrap().contact_nodes, 0);
     assert_eq!(relaxation.pressure(1.0, 5).unwrap().load(), 0.0);
     assert!(matches!(relaxation.at(f64::NAN), Err(Error::OutOfRange { .. })));
-    let beyond = Corners::ramp(10.0 * bed.approaches()[49], 1.0).unwrap();
+    let beyond = PiecewiseLinear::ramp(10.0 * bed.approaches()[49], 1.0).unwrap();
     let relaxation = Relaxation::new(&bed, &solid(), &beyond).unwrap();
     assert!(relaxation.at(0.05).is_ok());
     assert!(matches!(relaxation.at(1.0), Err(Error::Bed(BedError::PathEndsBefore { .. }))));
     // At once as well.
-    let at_once = Corners::step(10.0 * bed.approaches()[49]).unwrap();
+    let at_once = PiecewiseLinear::step(10.0 * bed.approaches()[49]).unwrap();
     let relaxation = Relaxation::new(&bed, &solid(), &at_once).unwrap();
     assert!(matches!(relaxation.at(0.0), Err(Error::Bed(BedError::PathEndsBefore { .. }))));
 }
@@ -82,7 +84,7 @@ fn steps_that_are_none() {
     }
     // It goes on as if nothing had been asked.
     assert!(contact.step(0.1, Control::Load(load)).is_ok());
-    let course = Course::Load(Corners::step(load).unwrap());
+    let course = ControlHistory::Load(PiecewiseLinear::step(load).unwrap());
     assert!(contact.follow(&course, &[0.05]).is_err());
     assert!(contact.follow(&course, &[f64::NAN]).is_err());
     assert!(contact.follow(&course, &[1.0, 0.5]).is_err());
@@ -105,10 +107,10 @@ fn steps_that_are_none() {
 fn a_path_of_one_state_is_a_bed() {
     let one = history(1);
     let bed = Bed::new(&one).unwrap();
-    let creep = Creep::new(&bed, &solid(), &Corners::step(0.0).unwrap()).unwrap();
+    let creep = Creep::new(&bed, &solid(), &PiecewiseLinear::step(0.0).unwrap()).unwrap();
     assert_eq!(creep.at(1.0).unwrap().contact_nodes, 1);
     assert_eq!(creep.times().len(), 1);
-    let loaded = Creep::new(&bed, &solid(), &Corners::step(1.0).unwrap()).unwrap();
+    let loaded = Creep::new(&bed, &solid(), &PiecewiseLinear::step(1.0).unwrap()).unwrap();
     assert!(loaded.at(1.0).is_err());
     let mut contact = ViscoelasticBed::new(&bed, &solid()).unwrap();
     assert!(contact.step(1.0, Control::Load(0.0)).is_ok());
@@ -118,7 +120,7 @@ fn a_path_of_one_state_is_a_bed() {
 }
 
 /// A body that hardly is one: numbers of any size, and what comes out is finite or an error.
-fn check(body: &Prony, corners: &Corners, time: f64, bed: &Bed) {
+fn check(body: &Prony, corners: &PiecewiseLinear, time: f64, bed: &Bed) {
     if let Ok(creep) = Creep::new(bed, body, corners) {
         if let Ok(state) = creep.at(time) {
             assert!(state.effective_load.is_finite() && state.approach.is_finite(), "{state:?}");
@@ -141,11 +143,11 @@ fn check(body: &Prony, corners: &Corners, time: f64, bed: &Bed) {
     }
     let mut contact = ViscoelasticBed::new(bed, body).unwrap();
     let times = [0.25 * time, 0.5 * time, time];
-    if let Ok(states) = contact.follow(&Course::Load(corners.clone()), &times) {
+    if let Ok(states) = contact.follow(&ControlHistory::Load(corners.clone()), &times) {
         assert!(states.iter().all(|state| state.approach.is_finite()), "{states:?}");
     }
     let mut contact = ViscoelasticBed::new(bed, body).unwrap();
-    if let Ok(states) = contact.follow(&Course::Approach(corners.clone()), &times) {
+    if let Ok(states) = contact.follow(&ControlHistory::Approach(corners.clone()), &times) {
         assert!(states.iter().all(|state| state.load.is_finite()), "{states:?}");
     }
 }
@@ -175,7 +177,7 @@ proptest! {
             (now, load * bed.last_load())
         });
         let corners: Vec<_> = corners.collect();
-        let Ok(corners) = Corners::new(corners) else {
+        let Ok(corners) = PiecewiseLinear::new(corners) else {
             return Ok(());
         };
         check(&body, &corners, 10_f64.powf(time), &bed);
@@ -192,7 +194,7 @@ proptest! {
         let bed = Bed::new(&history).unwrap();
         let body = Prony::relaxation(equilibrium, &terms).ok();
         let body = body.or_else(|| Prony::creep(equilibrium, &terms, time).ok());
-        if let (Some(body), Ok(corners)) = (body, Corners::new(corners)) {
+        if let (Some(body), Ok(corners)) = (body, PiecewiseLinear::new(corners)) {
             let _ = Creep::new(&bed, &body, &corners).map(|creep| creep.at(time).is_ok());
             let _ = Relaxation::new(&bed, &body, &corners).map(|held| held.at(time).is_ok());
         }
@@ -208,7 +210,7 @@ fn pressures_carry_the_load_after_any_time() {
     let load = 0.3 * bed.last_load();
     for terms in [&[(1e-6, 0.2), (1e-2, 0.2), (1e3, 0.2)][..], &[(1e-9, 0.5)], &[(1.0, 0.5)]] {
         let body = Prony::shares(terms).unwrap();
-        let held = Creep::new(&bed, &body, &Corners::step(load).unwrap()).unwrap();
+        let held = Creep::new(&bed, &body, &PiecewiseLinear::step(load).unwrap()).unwrap();
         for time in [0.0, 1e-6, 1.0, 1e4, 1e8, 1e12, 1e20] {
             let carried = held.pressure(time, usize::MAX).unwrap().load();
             assert!(

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::bed::Bed;
-use asperity::creep::{Control, Corners, Creep, Prony, ViscoelasticBed};
+use asperity::creep::{Control, Creep, PiecewiseLinear, Prony, ViscoelasticBed};
 use asperity::loading::History;
 use asperity::surface::HeightMap;
 use asperity::{Boussinesq, Grid, LoadingSolver};
@@ -35,7 +35,7 @@ const LOAD: f64 = 3.41e-7;
 fn a_load_that_is_held() {
     let (mut path, history) = path();
     let bed = Bed::new(&history).unwrap();
-    let creep = Creep::new(&bed, &solid(), &Corners::step(LOAD).unwrap()).unwrap();
+    let creep = Creep::new(&bed, &solid(), &PiecewiseLinear::step(LOAD).unwrap()).unwrap();
     assert_eq!(creep.recession(), None);
     let rows = table::read(data("creep/step_selfaffine_48.csv"));
     assert_eq!(rows.len(), 5);

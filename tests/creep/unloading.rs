@@ -1,7 +1,7 @@
 //! One unloading as a root, against the bed in steps of time.
 
 use asperity::bed::Bed;
-use asperity::creep::{Corners, Course, Creep, Prony, Unloading, ViscoelasticBed};
+use asperity::creep::{ControlHistory, Creep, PiecewiseLinear, Prony, Unloading, ViscoelasticBed};
 use asperity::loading::History;
 use asperity::{Boussinesq, CreepError, Error, Grid, LoadingSolver};
 
@@ -23,7 +23,7 @@ fn contact_is_that_of_an_earlier_time() {
     let bed = Bed::new(&history).unwrap();
     let body = Prony::relaxation(0.2, &[(1.0, 0.3), (0.1, 0.5)]).unwrap();
     let load = bed.loads()[50];
-    let corners = Corners::ramp(load, 1.0).unwrap().to(0.0, 1.0).unwrap();
+    let corners = PiecewiseLinear::ramp(load, 1.0).unwrap().to(0.0, 1.0).unwrap();
     let creep = Creep::new(&bed, &body, &corners).unwrap();
     // The effective load of two ramps does not know the surface: with W = t up to 1 it falls from 1.098012 on.
     let recession = creep.recession().unwrap();
@@ -44,7 +44,7 @@ fn contact_is_that_of_an_earlier_time() {
         for time in times {
             let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
             let up_to: Vec<f64> = all.iter().copied().filter(|t| *t <= time + 1e-9).collect();
-            let states = contact.follow(&Course::Load(corners.clone()), &up_to).unwrap();
+            let states = contact.follow(&ControlHistory::Load(corners.clone()), &up_to).unwrap();
             let time = states.last().unwrap().time;
             let expected = unloading.at(time).unwrap();
             if steps == 400 {
@@ -86,8 +86,12 @@ fn a_hold_after_unloading_brings_contact_back() {
     let bed = Bed::new(&history).unwrap();
     let body = Prony::relaxation(0.2, &[(1.0, 0.3), (0.1, 0.5)]).unwrap();
     let load = bed.loads()[50];
-    let corners =
-        Corners::ramp(load, 1.0).unwrap().to(0.5 * load, 0.3).unwrap().to(0.2 * load, 0.1).unwrap();
+    let corners = PiecewiseLinear::ramp(load, 1.0)
+        .unwrap()
+        .to(0.5 * load, 0.3)
+        .unwrap()
+        .to(0.2 * load, 0.1)
+        .unwrap();
     let held = corners.clone().hold(1.0).unwrap().to(0.0, 1.0).unwrap();
     let creep = Creep::new(&bed, &body, &held).unwrap();
     let unloading = Unloading::new(&creep).unwrap();
@@ -98,10 +102,10 @@ fn a_hold_after_unloading_brings_contact_back() {
     assert!(matches!(refused, Err(Error::Creep(CreepError::ContactReturns { .. }))), "{refused:?}");
     let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
     let times: Vec<f64> = (0..=2000).map(|k| 1e-3 * f64::from(k)).collect();
-    let states = contact.follow(&Course::Load(held), &times).unwrap();
+    let states = contact.follow(&ControlHistory::Load(held), &times).unwrap();
     assert!(states[1900].contact_nodes > states[1400].contact_nodes);
     // Taken away at once, part by part: each time the contact shrinks, and comes back.
-    let steps = Corners::step(load).unwrap().hold(1.0).unwrap().jump(0.4 * load).unwrap();
+    let steps = PiecewiseLinear::step(load).unwrap().hold(1.0).unwrap().jump(0.4 * load).unwrap();
     let creep = Creep::new(&bed, &body, &steps).unwrap();
     let recession = creep.recession().unwrap();
     assert!(recession.is_jump && recession.time == 1.0);
@@ -115,6 +119,6 @@ fn a_hold_after_unloading_brings_contact_back() {
     );
     let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
     let times: Vec<f64> = (0..=1000).map(|k| 1e-3 * f64::from(k)).collect();
-    let states = contact.follow(&Course::Load(steps), &times).unwrap();
+    let states = contact.follow(&ControlHistory::Load(steps), &times).unwrap();
     assert_eq!(states[1000].contact_nodes, state.contact.contact_nodes);
 }

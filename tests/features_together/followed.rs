@@ -1,7 +1,7 @@
 //! What follows from a path: patches, leaks, slip, creep, conductances and tables.
 
 use asperity::bed::Bed;
-use asperity::creep::{Corners, Creep, Prony, Relaxation};
+use asperity::creep::{Creep, PiecewiseLinear, Prony, Relaxation};
 use asperity::joint::{Conduction, InterfaceRow, InterfaceTable};
 use asperity::kernel::Theory;
 use asperity::leak::Seal;
@@ -226,7 +226,7 @@ pub(super) fn leak(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     for axis in [Axis::X, Axis::Y] {
         let seal = Seal::new(1e-3, 1e6, axis)?;
         for state in pressed.some() {
-            let gap = pressed.path.gap_at(&state)?;
+            let gap = pressed.path.fields_at(&state)?.gap;
             let contact = pressed.path.contact_map_at(&state)?;
             let found = seal.leak_at(&mut pressed.path, &state)?.leak_rate;
             let on = ([grid.dx(), grid.dy()], repeats, axis);
@@ -261,7 +261,7 @@ pub(super) fn slip(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let dense = Dense::of(pressed.row);
     let path = &mut pressed.path;
     let preload = joint.preload();
-    let pressure = path.pressure_at(&bed.path_state(preload.load)?)?;
+    let pressure = path.fields_at(&bed.path_state(preload.load)?)?.pressure;
     let allowed = pressed.row.tolerance() * joint.sliding_displacement();
     let mut slipping = 0;
     for part in [0.15, 0.5, 0.95] {
@@ -317,7 +317,7 @@ pub(super) fn creep(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let prony = Prony::shares(&[(TIME, SHARE)])?;
     // Behind full contact too.
     let load = if bed.is_full() { 0.5 } else { 0.35 } * bed.last_load();
-    let held = Creep::new(&bed, &prony, &Corners::step(load)?)?;
+    let held = Creep::new(&bed, &prony, &PiecewiseLinear::step(load)?)?;
     let dense = Dense::of(pressed.row);
     let length = bed.approaches().last().copied().unwrap_or(0.0);
     let allowed = pressed.row.tolerance() * length;
@@ -329,7 +329,7 @@ pub(super) fn creep(pressed: &mut Pressed<'_>) -> Result<(), Error> {
         let state = held.at(time)?;
         near(state.effective_load, load * grown, 1e-12 * load, &context);
         let there = held.path_state(time)?;
-        let elastic = pressed.path.pressure_at(&there)?;
+        let elastic = pressed.path.fields_at(&there)?.pressure;
         let tolerance = pressed.row.tolerance();
         let truth = dense.scalars(elastic.as_slice(), state.approach, tolerance, &context);
         near(truth.load, load * grown, 1e-9 * load, &context);
@@ -362,8 +362,8 @@ fn relaxation(
     let name = row.name;
     let load = 0.6 * bed.last_load();
     let there = bed.path_state(load)?;
-    let held = Relaxation::new(bed, prony, &Corners::step(there.contact.approach)?)?;
-    let elastic = path.pressure_at(&there)?;
+    let held = Relaxation::new(bed, prony, &PiecewiseLinear::step(there.contact.approach)?)?;
+    let elastic = path.fields_at(&there)?.pressure;
     let tolerance = row.tolerance();
     Dense::of(row).scalars(elastic.as_slice(), there.contact.approach, tolerance, name);
     for time in [0.0, 0.7, 5.0, 1e9] {
@@ -374,7 +374,7 @@ fn relaxation(
             near(*found, modulus * elastic_pressure, tolerance * elastic.max(), name);
         }
         let gap = held.gap(time, path)?;
-        for (found, elastic_gap) in gap.iter().zip(&path.gap_at(&there)?) {
+        for (found, elastic_gap) in gap.iter().zip(&path.fields_at(&there)?.gap) {
             near(*found, *elastic_gap, tolerance * there.contact.approach, name);
         }
     }

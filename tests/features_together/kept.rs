@@ -24,14 +24,19 @@ pub(super) fn record(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     pressed.path.add_unloading_stiffness(&mut expected)?;
     assert_eq!(found, expected, "{name}");
     for state in pressed.some() {
-        let (found, expected) = (replay.pressure_at(&state)?, pressed.path.pressure_at(&state)?);
+        let (found, expected) =
+            (replay.fields_at(&state)?.pressure, pressed.path.fields_at(&state)?.pressure);
         let greatest = expected.max();
         for (found, expected) in found.iter().zip(&expected) {
             // A solution by iterations to some 10⁻¹², beside one with a factor.
             near(*found, *expected, 1e-9 * greatest, name);
         }
         assert_eq!(replay.contact_map_at(&state)?, pressed.path.contact_map_at(&state)?, "{name}");
-        assert_eq!(replay.yielded_map_at(&state)?, pressed.path.yielded_map_at(&state)?, "{name}");
+        assert_eq!(
+            replay.fields_at(&state)?.yielded_map,
+            pressed.path.fields_at(&state)?.yielded_map,
+            "{name}"
+        );
     }
     Ok(())
 }

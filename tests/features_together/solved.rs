@@ -38,9 +38,9 @@ impl Pressed<'_> {
 
     /// A solution is the contact under its load, and the state of the path there.
     fn compare(&self, dense: &Dense, solution: &FixedLoadSolution, expected: &LoadingState) {
-        let (name, state) = (self.row.name, &solution.state);
+        let (name, state) = (self.row.name, &solution.contact);
         let (path, context) = (&expected.contact, format!("{name} at {} N", state.load));
-        let pressure = solution.pressure.as_slice();
+        let pressure = solution.fields.pressure.as_slice();
         let truth = dense.scalars(pressure, state.approach, ALLOWED, &context);
         near(state.load, truth.load, ALLOWED * state.load, &context);
         assert_eq!(state.contact_nodes, path.contact_nodes, "{context}");
@@ -114,7 +114,7 @@ pub(super) fn sweep(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let area = 0.6 * last.contact_area_fraction;
     let solution = solver.sweep([ContactTarget::AreaFraction(area)]).next().unwrap()?;
     let nodes = pressed.row.kernel.grid().nodes_in(area)?;
-    assert_eq!(solution.state.contact_nodes, nodes, "{}", pressed.row.name);
+    assert_eq!(solution.contact.contact_nodes, nodes, "{}", pressed.row.name);
     Ok(())
 }
 
@@ -126,9 +126,10 @@ pub(super) fn fields(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     for state in pressed.some() {
         let path = &mut pressed.path;
         let (contact, context) = (&state.contact, format!("{}, {}", pressed.row.name, state.step));
-        let pressure = path.pressure_at(&state)?;
+        let fields = path.fields_at(&state)?;
         let tolerance = pressed.row.tolerance();
-        let truth = dense.scalars(pressure.as_slice(), contact.approach, tolerance, &context);
+        let truth =
+            dense.scalars(fields.pressure.as_slice(), contact.approach, tolerance, &context);
         let length = contact.approach.abs().max(contact.mean_gap);
         near(contact.load, truth.load, allowed * contact.load, &context);
         let scale = contact.energy + contact.plastic.map_or(0.0, |plastic| plastic.work);
@@ -137,10 +138,10 @@ pub(super) fn fields(pressed: &mut Pressed<'_>) -> Result<(), Error> {
         if let Some(approach) = truth.approach {
             near(contact.approach, approach, tolerance * length, &context);
         }
-        for (found, expected) in path.gap_at(&state)?.iter().zip(&truth.gap) {
+        for (found, expected) in fields.gap.iter().zip(&truth.gap) {
             near(*found, *expected, tolerance * length, &context);
         }
-        for (found, expected) in path.plastic_depth_at(&state)?.iter().zip(&truth.depth) {
+        for (found, expected) in fields.plastic_depth.iter().zip(&truth.depth) {
             near(*found, *expected, tolerance * length, &context);
         }
         let nodes = path.contact_map_at(&state)?.iter().filter(|is_in| **is_in).count();
@@ -153,7 +154,7 @@ pub(super) fn fields(pressed: &mut Pressed<'_>) -> Result<(), Error> {
 /// no work but the elastic energy.
 pub(super) fn unload(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let (name, last) = (pressed.row.name, pressed.last().contact);
-    let there = pressed.path.pressure()?;
+    let there = pressed.path.fields()?.pressure;
     let residual = pressed.path.residual_surface()?;
     let kernel = &*pressed.row.kernel;
     let builder = LoadingSolver::builder(&residual, kernel).max_load(last.load);
@@ -161,7 +162,7 @@ pub(super) fn unload(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let states = back.by_ref().collect::<Result<History, _>>()?;
     // Full contact, where it ends, may come before.
     let end = states.at(ContactTarget::Load(last.load))?;
-    let pressure = back.pressure_at(&end)?;
+    let pressure = back.fields_at(&end)?.pressure;
     let gaps = asperity_testing::dense::initial_gap(residual.matrix());
     let dense = Dense::of(pressed.row).elastic(gaps);
     let tolerance = pressed.row.tolerance();

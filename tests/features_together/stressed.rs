@@ -38,7 +38,7 @@ pub(super) fn stress(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let grid = body.grid();
     let states = pressed.history.states();
     let state = states[2 * states.len() / 3];
-    let pressure = pressed.path.pressure_at(&state)?;
+    let pressure = pressed.path.fields_at(&state)?.pressure;
     let (most, total) = (pressure.max(), pressure.sum());
     let surface = body.at_depth(&pressure, 0.0)?;
     // Sums over 300 cells, extrapolated ones with weights of up to 1023.

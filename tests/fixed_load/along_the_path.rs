@@ -55,7 +55,7 @@ fn random_loads() {
                     solver.solve(load).unwrap()
                 };
                 check(&solver, &solution, 1e-12);
-                let state = solution.state;
+                let state = solution.contact;
                 let context = format!("case {case}, load {load:e}: {state:?}, {expected:?}");
                 assert_eq!(state.contact_nodes, expected.contact.contact_nodes, "{context}");
                 // Near full contact the mean gap is a small difference; it is measured by the rms
@@ -85,13 +85,13 @@ fn random_loads() {
                 } else {
                     assert_eq!(stiffness, f64::INFINITY);
                 }
-                let pressure = path.pressure_at(&expected).unwrap();
-                let error = (&solution.pressure - &pressure).amax() / pressure.amax();
+                let pressure = path.fields_at(&expected).unwrap().pressure;
+                let error = (&solution.fields.pressure - &pressure).amax() / pressure.amax();
                 assert!(error < 1e-8, "{context}: {error:e}");
                 if !is_free {
                     // The displacement is about its mean.
-                    let mean = solution.displacement.mean();
-                    let most = solution.displacement.amax();
+                    let mean = solution.fields.displacement.mean();
+                    let most = solution.fields.displacement.amax();
                     assert!(mean.abs() < 1e-13 * most, "{mean:e}");
                 }
             }
@@ -116,7 +116,7 @@ fn mean_gaps_and_approaches() {
             .map(|step: usize| history.states()[step].contact.mean_gap);
         let targets = gaps.map(ContactTarget::MeanGap);
         for (gap, solution) in gaps.into_iter().zip(solver.sweep(targets)) {
-            let state = solution.unwrap().state;
+            let state = solution.unwrap().contact;
             assert!((state.mean_gap - gap).abs() <= 1e-12 * state.approach);
             let expected = history.at_mean_gap(gap).unwrap();
             // The tolerance of the gap times the stiffness.
@@ -126,7 +126,7 @@ fn mean_gaps_and_approaches() {
         let approaches = steps.map(|step: usize| history.states()[step].contact.approach);
         let targets = approaches.map(ContactTarget::Approach);
         for (step, solution) in steps.into_iter().zip(solver.sweep(targets)) {
-            let load = solution.unwrap().state.load;
+            let load = solution.unwrap().contact.load;
             assert!(relative(load, history.states()[step].contact.load) < 1e-8);
         }
     }
@@ -146,7 +146,7 @@ fn the_path_ends_at_the_pseudo_inverse() {
         // The sums have 300 terms: some 1e-14 of the greatest, magnified by a condition number of 30.
         assert!(relative(state.contact.mean_pressure(), relief.max()) < 1e-12);
         assert!(relative(state.contact.approach, gap.mean()) < 1e-12);
-        let pressure = path.pressure_at(&state).unwrap();
+        let pressure = path.fields_at(&state).unwrap().pressure;
         let (node, least) =
             pressure.iter().enumerate().fold((0, f64::INFINITY), |least, (node, p)| {
                 if *p < least.1 { (node, *p) } else { least }

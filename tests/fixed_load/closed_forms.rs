@@ -49,19 +49,19 @@ fn full_contact_is_the_pseudo_inverse() {
             let mean = factor * full;
             let solution = solver.solve(mean * grid.nominal_area()).unwrap();
             check(&solver, &solution, 1e-12);
-            let state = solution.state;
+            let state = solution.contact;
             assert_eq!(state.contact_nodes, grid.nodes());
             assert_eq!(state.mean_gap, 0.0);
             assert_eq!(state.interfacial_stiffness, Some(f64::INFINITY));
             // The tolerance of 1e-12 times the condition.
             assert!(relative(state.approach, gap.mean()) < 1e-10);
             let expected = relief.map(|relief| mean - relief);
-            let error = (&solution.pressure - &expected).amax() / mean;
+            let error = (&solution.fields.pressure - &expected).amax() / mean;
             assert!(error < 1e-10, "{factor}: {error:e}");
         }
         let short = solver.solve(0.999 * full * grid.nominal_area()).unwrap();
         check(&solver, &short, 1e-12);
-        assert!(short.state.contact_nodes < grid.nodes() && short.state.mean_gap > 0.0);
+        assert!(short.contact.contact_nodes < grid.nodes() && short.contact.mean_gap > 0.0);
     }
 }
 
@@ -76,13 +76,13 @@ fn approaches_up_to_the_mean_gap() {
         for part in [1e-6, 0.1, 0.5, 0.9, 0.99, 0.999, 0.999_99] {
             let by_approach = solver.solve_approach(part * mean_gap).unwrap();
             check(&solver, &by_approach, 1e-11);
-            let state = by_approach.state;
+            let state = by_approach.contact;
             // The mean gap closes by what the mean planes approach: an identity, up to gaps in
             // contact of the tolerance.
             let error = state.mean_gap - (1.0 - part) * mean_gap;
             assert!(error.abs() < 1e-10 * mean_gap, "{part}: {error:e}");
             let by_load = solver.solve(state.load).unwrap();
-            let error = relative(by_load.state.approach, state.approach);
+            let error = relative(by_load.contact.approach, state.approach);
             assert!(error < 1e-9, "{part}: {error:e}");
         }
         for part in [1.0, 1.5] {
@@ -108,10 +108,10 @@ fn flat_surfaces() {
                 let solution = solver.solve(load).unwrap();
                 check(&solver, &solution, 1e-8);
                 let pressure = load / grid.nominal_area();
-                let error = solution.pressure.map(|p| (p / pressure - 1.0).abs()).max();
+                let error = solution.fields.pressure.map(|p| (p / pressure - 1.0).abs()).max();
                 assert!(error < 1e-12, "{error:e}");
-                assert_eq!(solution.state.mean_gap, 0.0);
-                assert_eq!(solution.state.interfacial_stiffness, Some(f64::INFINITY));
+                assert_eq!(solution.contact.mean_gap, 0.0);
+                assert_eq!(solution.contact.interfacial_stiffness, Some(f64::INFINITY));
             }
             assert!(matches!(solver.solve_approach(1e-9), Err(Error::ApproachNotReached { .. })));
         }
@@ -121,9 +121,9 @@ fn flat_surfaces() {
     let mut punch = solver(&flat, &Kernel::free(grid, 1.0), 1e-12);
     let solution = punch.solve(1.0).unwrap();
     check(&punch, &solution, 1e-12);
-    assert_eq!(solution.state.contact_nodes, 4096);
+    assert_eq!(solution.contact.contact_nodes, 4096);
     // The square punch on 64 × 64 cells from a dense solver, given to eight digits.
-    assert!(relative(solution.state.contact_stiffness.unwrap(), 1.1461731) < 1e-7);
+    assert!(relative(solution.contact.contact_stiffness.unwrap(), 1.1461731) < 1e-7);
 }
 
 /// Symmetric shapes have ties at every step.
@@ -134,7 +134,7 @@ fn a_sphere_is_symmetric() {
     let mut sphere = solver(&map, &Kernel::free(grid, 1.0), 1e-12);
     let solution = sphere.solve(0.001).unwrap();
     check(&sphere, &solution, 1e-12);
-    let p = &solution.pressure;
+    let p = &solution.fields.pressure;
     for ((ix, iy), value) in (0..64 * 64).map(|k| ((k % 64, k / 64), p[(k % 64, k / 64)])) {
         // Mirror images are equal to the tolerance times the condition.
         assert!((value - p[(63 - ix, iy)]).abs() < 1e-9 * p.max());
@@ -164,12 +164,12 @@ fn from_full_contact_to_an_approach() {
             ContactTarget::Approach(0.9 * mean_gap),
         ];
         let solutions: Vec<_> = solver.sweep(targets).map(Result::unwrap).collect();
-        assert_eq!(solutions[0].state.contact_nodes, 2);
+        assert_eq!(solutions[0].contact.contact_nodes, 2);
         for (solution, part) in solutions[1..].iter().zip([0.95, 0.9]) {
             check(&solver, solution, 1e-12);
-            assert_eq!(solution.state.contact_nodes, 1);
+            assert_eq!(solution.contact.contact_nodes, 1);
             // One equation, whose error is the tolerance.
-            let error = relative(solution.state.load, load(part * mean_gap));
+            let error = relative(solution.contact.load, load(part * mean_gap));
             assert!(error < 1e-11, "{error:e}");
         }
     }

@@ -26,7 +26,7 @@ fn single_node_to_far_beyond_full_contact() {
                 let load = 10_f64.powi(exponent);
                 let solution = solver.solve(load).unwrap();
                 check(&solver, &solution, tolerance);
-                let state = solution.state;
+                let state = solution.contact;
                 assert_eq!(state.contact_stiffness.is_some(), is_free);
                 if exponent <= -10 {
                     assert_eq!(state.contact_nodes, 1);
@@ -120,7 +120,7 @@ fn long_cells() {
                             + states[nx * ny / part].contact.load);
                     let solution = solver.solve(load).unwrap();
                     check(&solver, &solution, 1e-8);
-                    assert_eq!(solution.state.contact_nodes, nx * ny / part);
+                    assert_eq!(solution.contact.contact_nodes, nx * ny / part);
                     // Up to 70 were measured, most of them for the stiffness.
                     let effort = solution.effort;
                     assert!(effort.iterations + effort.stiffness_iterations < 200, "{effort:?}");
@@ -162,7 +162,7 @@ fn flat_but_for_rounding() {
                 let mut solver = solver(&map, &kernel, 1e-8);
                 let solution = solver.solve((nx * ny) as f64).unwrap();
                 check(&solver, &solution, 1e-8);
-                assert_eq!(solution.state.contact_nodes, nx * ny);
+                assert_eq!(solution.contact.contact_nodes, nx * ny);
                 let effort = solution.effort;
                 assert!(effort.iterations < 3 && effort.coarse_convolutions < 20.0, "{effort:?}");
             }

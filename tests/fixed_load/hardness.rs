@@ -94,15 +94,23 @@ fn states_lie_on_the_path() {
             let context = format!("{name} after event {k}");
             let mean = |of: fn(&Event) -> f64| 0.5 * (of(this) + of(next));
             let solution = solver.solve(mean(|event| event.load)).unwrap();
-            let plastic = solution.plastic.as_ref().unwrap();
+            let plastic = solution.contact.plastic.unwrap();
             for node in 0..grid().nodes() {
                 let has = |yields| {
                     events[..=k].iter().any(|event| event.yields == yields && event.node == node)
                 };
-                assert_eq!(solution.contact_map.as_slice()[node], has(false), "{context}: {node}");
-                assert_eq!(plastic.yielded_map.as_slice()[node], has(true), "{context}: {node}");
+                assert_eq!(
+                    solution.fields.contact_map.as_slice()[node],
+                    has(false),
+                    "{context}: {node}"
+                );
+                assert_eq!(
+                    solution.fields.yielded_map.as_slice()[node],
+                    has(true),
+                    "{context}: {node}"
+                );
             }
-            let state = &solution.state;
+            let state = &solution.contact;
             // Gaps are right to 1e-11 of the approach; a plateau has none of its own.
             let allowed = 1e-9 * longest;
             near(state.approach, mean(|event| event.approach), allowed, &context);
@@ -127,10 +135,10 @@ fn states_lie_on_the_path() {
                 continue;
             }
             let by_approach = solver.solve_approach(mean(|event| event.approach)).unwrap();
-            assert_eq!(by_approach.contact_map, solution.contact_map, "{context}");
-            let found = by_approach.plastic.unwrap();
-            assert_eq!(found.yielded_map, plastic.yielded_map, "{context}");
-            near(by_approach.state.load / state.load, 1.0, 1e-6, &context);
+            assert_eq!(by_approach.fields.contact_map, solution.fields.contact_map, "{context}");
+            let yielded = [&by_approach, &solution].map(|solution| &solution.fields.yielded_map);
+            assert_eq!(yielded[0], yielded[1], "{context}");
+            near(by_approach.contact.load / state.load, 1.0, 1e-6, &context);
         }
         assert!(compared > 40, "{name}: {compared}");
     }
@@ -138,11 +146,11 @@ fn states_lie_on_the_path() {
 
 /// 0 ≤ p ≤ H, gaps ≥ 0, pressure only where the gap is closed, plastic depth only where p = H.
 fn conditions(solution: &FixedLoadSolution, context: &str) {
-    let plastic = solution.plastic.as_ref().unwrap();
+    let fields = &solution.fields;
     let length = 1e-9 * solution.certificate.length;
-    for node in 0..solution.pressure.len() {
-        let (p, gap) = (solution.pressure[node], solution.gap[node]);
-        let (depth, has_yielded) = (plastic.depth[node], plastic.yielded_map[node]);
+    for node in 0..solution.fields.pressure.len() {
+        let (p, gap) = (solution.fields.pressure[node], solution.fields.gap[node]);
+        let (depth, has_yielded) = (fields.plastic_depth[node], fields.yielded_map[node]);
         assert!((0.0..=HARDNESS).contains(&p) && depth >= 0.0, "{context}: {p} {depth}");
         assert!(gap >= -length && (p == 0.0 || gap <= length), "{context}: {p} {gap}");
         assert!(has_yielded || depth == 0.0, "{context}");
@@ -150,7 +158,7 @@ fn conditions(solution: &FixedLoadSolution, context: &str) {
     }
     let certificate = &solution.certificate;
     assert!(certificate.greatest_contact_gap <= 1e-9, "{context}: {certificate:?}");
-    assert!(solution.plastic.as_ref().unwrap().yielded_nodes() <= solution.state.contact_nodes);
+    assert!(solution.contact.plastic.unwrap().yielded_nodes <= solution.contact.contact_nodes);
 }
 
 /// The surface less its plastic depth carries the same pressures elastically, at the approach less what is left of the highest node.
@@ -170,11 +178,11 @@ fn unloading_is_elastic_on_the_residual_surface() {
         let mut elastic =
             FixedLoadSolver::builder(&residual, &*kernel).tolerance(1e-11).build().unwrap();
         let again = elastic.solve(load).unwrap();
-        assert!(again.plastic.is_none());
+        assert!(again.contact.plastic.is_none());
         let lowered = heights.max_height() - residual.max_height();
-        near(again.state.approach + lowered, solution.state.approach, 1e-14, name);
-        near(again.state.energy / solution.state.energy, 1.0, 1e-8, name);
-        for (found, expected) in again.pressure.iter().zip(&solution.pressure) {
+        near(again.contact.approach + lowered, solution.contact.approach, 1e-14, name);
+        near(again.contact.energy / solution.contact.energy, 1.0, 1e-8, name);
+        for (found, expected) in again.fields.pressure.iter().zip(&solution.fields.pressure) {
             near(*found, *expected, 1e-6 * HARDNESS, name);
         }
     }
@@ -203,16 +211,16 @@ fn two_nodes_by_hand() {
         (4.0, [0.75, 0.75], [true, true], 1.75),
     ] {
         let solution = solver.solve_approach(approach).unwrap();
-        for (found, expected) in solution.pressure.iter().zip(pressures) {
+        for (found, expected) in solution.fields.pressure.iter().zip(pressures) {
             near(*found, expected, 1e-11, "pressure");
         }
-        let plastic = solution.plastic.as_ref().unwrap();
-        assert_eq!(plastic.yielded_map.as_slice(), yielded, "{approach}");
-        near(plastic.depth[0], depth, 1e-11, "depth");
+        let fields = &solution.fields;
+        assert_eq!(fields.yielded_map.as_slice(), yielded, "{approach}");
+        near(fields.plastic_depth[0], depth, 1e-11, "depth");
         // On the plateau, and behind the end, the load stays what it is.
         let flat = [false, true, false, true]
             [[1.0, 1.625, 2.75, 4.0].iter().position(|a| *a == approach).unwrap()];
-        assert_eq!(solution.state.contact_stiffness == Some(0.0), flat, "{approach}");
+        assert_eq!(solution.contact.contact_stiffness == Some(0.0), flat, "{approach}");
     }
     for load in [1.5, 2.0] {
         assert!(matches!(
@@ -221,7 +229,7 @@ fn two_nodes_by_hand() {
                 if found == load && mean_pressure / hardness == load / 1.5
         ));
     }
-    near(solver.solve(1.25).unwrap().state.approach, 2.75, 1e-11, "approach");
+    near(solver.solve(1.25).unwrap().contact.approach, 2.75, 1e-11, "approach");
 }
 
 /// A hardness without end, or above all pressures, changes nothing.
@@ -236,11 +244,11 @@ fn a_great_hardness_is_none() {
     };
     let elastic = solve(None);
     assert_eq!(solve(Some(f64::INFINITY)), elastic);
-    let high = solve(Some(10.0 * elastic.max_pressure()));
-    assert_eq!(high.contact_map, elastic.contact_map);
-    assert_eq!(high.plastic.unwrap().yielded_nodes(), 0);
-    for (found, expected) in high.pressure.iter().zip(&elastic.pressure) {
-        near(*found, *expected, 1e-7 * elastic.max_pressure(), "pressure");
+    let high = solve(Some(10.0 * elastic.fields.max_pressure()));
+    assert_eq!(high.fields.contact_map, elastic.fields.contact_map);
+    assert_eq!(high.contact.plastic.unwrap().yielded_nodes, 0);
+    for (found, expected) in high.fields.pressure.iter().zip(&elastic.fields.pressure) {
+        near(*found, *expected, 1e-7 * elastic.fields.max_pressure(), "pressure");
     }
     // A map of one value is that value, and one that is infinite at places limits the others alone.
     let soft = solve(Some(HARDNESS));
@@ -248,11 +256,14 @@ fn a_great_hardness_is_none() {
     let builder = FixedLoadSolver::builder(&heights, &*kernel).hardness_map(&map);
     assert_eq!(builder.build().unwrap().solve(100.0).unwrap(), soft);
     let mut map = map;
-    let hardest = soft.plastic.as_ref().unwrap().yielded_map.iter().position(|y| *y).unwrap();
+    let hardest = soft.fields.yielded_map.iter().position(|y| *y).unwrap();
     map[hardest] = f64::INFINITY;
     let builder = FixedLoadSolver::builder(&heights, &*kernel).hardness_map(&map);
     let mixed = builder.build().unwrap().solve(100.0).unwrap();
-    assert!(mixed.pressure[hardest] > HARDNESS && mixed.plastic.unwrap().yielded_nodes() > 0);
+    assert!(
+        mixed.fields.pressure[hardest] > HARDNESS
+            && mixed.contact.plastic.unwrap().yielded_nodes > 0
+    );
 }
 
 /// Area and mean gap as targets, and a sweep, lead to the states of the same loads.
@@ -265,19 +276,23 @@ fn targets_and_sweeps() {
         let mut solver = builder.build().unwrap();
         let load = events(name)[150].load * 1.001;
         let solution = solver.solve(load).unwrap();
-        let target = ContactTarget::MeanGap(solution.state.mean_gap);
+        let target = ContactTarget::MeanGap(solution.contact.mean_gap);
         let found = solver.solve_target(target).unwrap();
-        near(found.state.load / load, 1.0, 1e-6, name);
-        let fraction = solution.state.contact_area_fraction;
+        near(found.contact.load / load, 1.0, 1e-6, name);
+        let pressure = ContactTarget::MeanPressure(load / grid().nominal_area());
+        assert_eq!(
+            solver.solve_target(pressure).unwrap().contact.contact_nodes,
+            solution.contact.contact_nodes
+        );
+        let refused = solver.solve_target(ContactTarget::MeanPressure(0.0)).unwrap_err();
+        assert!(matches!(refused, Error::NotPositive { quantity: "mean pressure", .. }));
+        let fraction = solution.contact.contact_area_fraction;
         let found = solver.solve_target(ContactTarget::AreaFraction(fraction)).unwrap();
-        assert_eq!(found.state.contact_nodes, solution.state.contact_nodes, "{name}");
+        assert_eq!(found.contact.contact_nodes, solution.contact.contact_nodes, "{name}");
         let loads = [0.5 * load, load, 0.7 * load].map(ContactTarget::Load);
         let swept: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
-        assert_eq!(swept[1].contact_map, solution.contact_map, "{name}");
-        assert_eq!(
-            swept[1].plastic.as_ref().map(|p| p.yielded_map.clone()),
-            solution.plastic.map(|p| p.yielded_map)
-        );
+        assert_eq!(swept[1].fields.contact_map, solution.fields.contact_map, "{name}");
+        assert_eq!(swept[1].fields.yielded_map, solution.fields.yielded_map, "{name}");
         assert_eq!(swept.len(), 3);
     }
 }
@@ -307,15 +322,15 @@ fn sweeps_go_on_from_what_has_yielded() {
                 conditions(found, &context);
                 let from = earlier.map(|earlier| alone.solve_from(&earlier, load).unwrap());
                 for found in from.iter().chain([found]) {
-                    assert_eq!(found.contact_map, expected.contact_map, "{context}");
-                    let [a, b] = [found, &expected].map(|s| s.plastic.clone().unwrap());
-                    assert_eq!(a.yielded_map, b.yielded_map, "{context}");
+                    assert_eq!(found.fields.contact_map, expected.fields.contact_map, "{context}");
+                    let [a, b] = [found, &expected].map(|s| &s.fields.yielded_map);
+                    assert_eq!(a, b, "{context}");
                     // Gaps are right to 1e-10 of the approach.
                     let length = 1e-8 * expected.certificate.length;
-                    near(found.state.approach, expected.state.approach, length, &context);
-                    near(found.state.load, load, 1e-12 * load, &context);
+                    near(found.contact.approach, expected.contact.approach, length, &context);
+                    near(found.contact.load, load, 1e-12 * load, &context);
                     assert!(found.certificate.excess_pressure.unwrap().abs() <= 1e-15);
-                    let [a, b] = [found, &expected].map(|s| s.state.plastic.unwrap());
+                    let [a, b] = [found, &expected].map(|s| s.contact.plastic.unwrap());
                     assert_eq!(a.yielded_nodes, b.yielded_nodes);
                     if stiffness {
                         near(a.work_per_load / b.work_per_load, 1.0, 1e-6, &context);
@@ -368,7 +383,7 @@ fn plastic_rates_are_derivatives() {
                 continue;
             }
             let at = |part: f64| from + part * (to - from);
-            let [a, b] = [0.2, 0.8].map(|part| solver.solve(at(part)).unwrap().state);
+            let [a, b] = [0.2, 0.8].map(|part| solver.solve(at(part)).unwrap().contact);
             let [va, vb] = [a, b].map(|state| state.plastic.unwrap());
             // Gaps to 1e-11 of the approach, over 1e-4 of it, on at most all nodes; both have the same sets.
             let length = 1e-9 * b.approach * grid().nominal_area();
@@ -394,9 +409,9 @@ fn all_yield_together() {
             .unwrap();
         for part in [0.5, 0.99, 0.999_999] {
             let solution = solver.solve(72.0 * part).unwrap();
-            assert_eq!(solution.state.contact_nodes, 36);
-            near(solution.pressure.sum(), 72.0 * part, 1e-9, "sum");
-            assert!(solution.max_pressure() <= 2.0);
+            assert_eq!(solution.contact.contact_nodes, 36);
+            near(solution.fields.pressure.sum(), 72.0 * part, 1e-9, "sum");
+            assert!(solution.fields.max_pressure() <= 2.0);
         }
     }
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
@@ -406,9 +421,9 @@ fn all_yield_together() {
             FixedLoadSolver::builder(&surface, &kernel).hardness(hardness).build().unwrap();
         let solution = solver.solve(18.5 * hardness).unwrap();
         // The bearing area: 18 nodes carry the hardness, and one or more what is left.
-        assert!((18..=36).contains(&solution.state.contact_nodes), "{hardness}");
-        assert!(solution.max_pressure() <= hardness);
-        near(solution.pressure.sum() / hardness, 18.5, 1e-7, "sum");
+        assert!((18..=36).contains(&solution.contact.contact_nodes), "{hardness}");
+        assert!(solution.fields.max_pressure() <= hardness);
+        near(solution.fields.pressure.sum() / hardness, 18.5, 1e-7, "sum");
     }
 }
 
@@ -453,11 +468,15 @@ fn yielded_nodes_stay_yielded() {
     ];
     for (mut solver, load, expected) in cases {
         let solution = solver.solve(load).unwrap();
-        assert!((solution.pressure.sum() / load - 1.0).abs() < 1e-12, "{}", solution.pressure);
-        for (found, expected) in solution.pressure.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-12 * load, "{}", solution.pressure);
+        assert!(
+            (solution.fields.pressure.sum() / load - 1.0).abs() < 1e-12,
+            "{}",
+            solution.fields.pressure
+        );
+        for (found, expected) in solution.fields.pressure.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12 * load, "{}", solution.fields.pressure);
         }
-        let yielded = solution.plastic.unwrap().yielded_map;
+        let yielded = solution.fields.yielded_map;
         assert!(yielded[0] && yielded.iter().any(|has_yielded| !has_yielded), "{yielded}");
     }
 }

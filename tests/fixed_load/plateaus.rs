@@ -44,7 +44,7 @@ fn plateaus(history: &History) -> Vec<[ContactState; 2]> {
 
 /// Pressures are known on a plateau, so that all else is right to rounding of lengths, which the path has too: 1e-12 of the longest.
 fn compare(found: &FixedLoadSolution, expected: &ContactState, length: f64, context: &str) {
-    let (state, plastic) = (&found.state, found.state.plastic.unwrap());
+    let (state, plastic) = (&found.contact, found.contact.plastic.unwrap());
     let of_path = expected.plastic.unwrap();
     assert_eq!(state.contact_nodes, expected.contact_nodes, "{context}");
     assert_eq!(plastic.yielded_nodes, of_path.yielded_nodes, "{context}");
@@ -136,14 +136,14 @@ fn sweeps_pass_plateaus() {
         for (solution, load) in
             solver.sweep(loads.iter().copied().map(ContactTarget::Load)).zip(&loads)
         {
-            let state = solution.unwrap().state;
+            let state = solution.unwrap().contact;
             let expected = history.at_load(*load).unwrap().contact;
             let error = (state.approach - expected.approach).abs() / length;
             assert!(error < 1e-8, "{load}: {error:e}");
         }
         // And down.
         for load in loads.iter().rev() {
-            let state = solver.solve(*load).unwrap().state;
+            let state = solver.solve(*load).unwrap().contact;
             let expected = history.at_load(*load).unwrap().contact;
             assert!((state.approach - expected.approach).abs() < 1e-8 * length, "{load}");
         }

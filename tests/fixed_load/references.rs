@@ -20,9 +20,9 @@ fn free_half_space() {
     ] {
         let solution = solver.solve(load).unwrap();
         check(&solver, &solution, 1e-12);
-        assert_eq!(solution.state.contact_nodes, nodes, "load {load}");
+        assert_eq!(solution.contact.contact_nodes, nodes, "load {load}");
         // Pressures err some hundred times as much as gaps, relative to the greatest of each.
-        let error = relative(solution.max_pressure(), max_pressure);
+        let error = relative(solution.fields.max_pressure(), max_pressure);
         assert!(error < 1e-9, "load {load}: {error:e}");
     }
 }
@@ -42,12 +42,12 @@ fn periodic_half_space() {
     ] {
         let solution = solver.solve(load).unwrap();
         check(&solver, &solution, 1e-12);
-        assert_eq!(solution.state.contact_stiffness, None);
-        assert_eq!(solution.state.contact_nodes, nodes, "load {load}");
+        assert_eq!(solution.contact.contact_stiffness, None);
+        assert_eq!(solution.contact.contact_nodes, nodes, "load {load}");
         // Pressures err some hundred times as much as gaps, relative to the greatest of each.
-        let error = relative(solution.max_pressure(), max_pressure);
+        let error = relative(solution.fields.max_pressure(), max_pressure);
         assert!(error < 1e-9, "load {load}: pressure {error:e}");
-        let error = relative(solution.state.mean_gap, mean_gap);
+        let error = relative(solution.contact.mean_gap, mean_gap);
         assert!(error < 1e-9, "load {load}: mean gap {error:e}");
     }
 }

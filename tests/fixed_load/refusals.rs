@@ -68,12 +68,12 @@ fn too_few_iterations_for_stiffnesses() {
             }
             other => panic!("{other:?}"),
         }
-        assert_eq!(solution.state, before.state);
-        assert_eq!(solution.state.interfacial_stiffness, None);
+        assert_eq!(solution.contact, before.contact);
+        assert_eq!(solution.contact.interfacial_stiffness, None);
         assert_eq!(solution.pressure_rate, before.pressure_rate);
         let mut patient = solver(&map, &kernel, 1e-8);
         patient.add_stiffness(&mut solution).unwrap();
-        assert!(solution.state.interfacial_stiffness.unwrap() > 0.0);
+        assert!(solution.contact.interfacial_stiffness.unwrap() > 0.0);
     }
 }
 
@@ -121,20 +121,21 @@ fn starts_that_are_no_solutions() {
     };
     for value in [f64::NAN, f64::INFINITY] {
         for error in [
-            refused(&|bad| bad.pressure[3] = value),
-            refused(&|bad| bad.displacement[5] = value),
+            refused(&|bad| bad.fields.pressure[3] = value),
+            refused(&|bad| bad.fields.displacement[5] = value),
             refused(&|bad| bad.pressure_rate[7] = value),
         ] {
             assert!(matches!(error, Error::FieldNotFinite { .. }), "{error}");
         }
         for error in [
-            refused(&|bad| bad.state.approach = value),
-            refused(&|bad| bad.state.contact_stiffness = Some(value)),
+            refused(&|bad| bad.contact.approach = value),
+            refused(&|bad| bad.contact.contact_stiffness = Some(value)),
         ] {
             assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
         }
     }
-    let error = refused(&|bad| bad.pressure = bad.pressure.columns(0, 8).into_owned());
+    let error =
+        refused(&|bad| bad.fields.pressure = bad.fields.pressure.columns(0, 8).into_owned());
     assert!(matches!(error, Error::GridMismatch { .. }), "{error}");
 
     // The same shape with other cells.
@@ -145,12 +146,12 @@ fn starts_that_are_no_solutions() {
     assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
     // Numbers that are finite and make no sense are only a poor start.
     let mut poor = good.clone();
-    poor.displacement.fill(1e3);
+    poor.fields.displacement.fill(1e3);
     let found = solver.solve_from(&poor, 0.011).unwrap();
-    assert_eq!(found.contact_map, solver.solve(0.011).unwrap().contact_map);
+    assert_eq!(found.fields.contact_map, solver.solve(0.011).unwrap().fields.contact_map);
 
     let mut none = good;
-    none.contact_map.fill(false);
+    none.fields.contact_map.fill(false);
     let error = solver.add_stiffness(&mut none).unwrap_err();
     assert!(matches!(error, Error::NotPositive { .. }), "{error}");
 }
@@ -168,9 +169,9 @@ fn starts_that_overflow_come_to_an_end() {
                 let mut bad = good.clone();
                 bad.pressure_rate.fill(value);
                 let mut other = good.clone();
-                other.displacement.fill(value);
+                other.fields.displacement.fill(value);
                 let mut third = good.clone();
-                third.pressure[(3, 3)] = value.abs();
+                third.fields.pressure[(3, 3)] = value.abs();
                 for start in [bad, other, third] {
                     let mut solver = FixedLoadSolver::builder(&map, &kernel)
                         .max_iterations(iterations)
@@ -229,6 +230,6 @@ fn indefinite_kernels() {
         let mut solver = FixedLoadSolver::new(&map, &repulsion).unwrap();
         let solution = solver.solve(load).unwrap();
         check(&solver, &solution, 1e-8);
-        assert_eq!(solution.state.contact_nodes, 1);
+        assert_eq!(solution.contact.contact_nodes, 1);
     }
 }

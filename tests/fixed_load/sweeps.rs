@@ -21,11 +21,12 @@ fn a_sweep_is_its_loads() {
         for (load, swept) in loads.into_iter().zip(swept) {
             check(&solver, &swept, 1e-11);
             let cold = solver.solve(load).unwrap();
-            assert_eq!(swept.contact_map, cold.contact_map, "load {load}");
-            let error = (&swept.pressure - &cold.pressure).amax() / cold.max_pressure();
+            assert_eq!(swept.fields.contact_map, cold.fields.contact_map, "load {load}");
+            let error = (&swept.fields.pressure - &cold.fields.pressure).amax()
+                / cold.fields.max_pressure();
             // The tolerance times the condition.
             assert!(error < 1e-8, "load {load}: {error:e}");
-            let states = [swept.state, cold.state];
+            let states = [swept.contact, cold.contact];
             let stiffnesses = states.map(|state| state.interfacial_stiffness.unwrap());
             if stiffnesses[0].is_finite() {
                 let error = relative(stiffnesses[0], stiffnesses[1]);
@@ -55,8 +56,8 @@ fn from_a_solution() {
             let next = solver.solve_from(&start, load).unwrap();
             check(&solver, &next, 1e-11);
             let cold = solver.solve(load).unwrap();
-            assert_eq!(next.contact_map, cold.contact_map, "load {load}");
-            assert!(relative(next.state.approach, cold.state.approach) < 1e-10);
+            assert_eq!(next.fields.contact_map, cold.fields.contact_map, "load {load}");
+            assert!(relative(next.contact.approach, cold.contact.approach) < 1e-10);
         }
     }
 }
@@ -121,7 +122,7 @@ fn back_from_full_contact_without_stiffnesses() {
             .build()
             .unwrap();
         let targets = [
-            ContactTarget::Load(3.0 * full.state.load),
+            ContactTarget::Load(3.0 * full.contact.load),
             approach(0.9999),
             approach(0.99),
             approach(0.9),
@@ -130,7 +131,7 @@ fn back_from_full_contact_without_stiffnesses() {
         for (target, swept) in targets.into_iter().zip(swept) {
             check(&solver, &swept, 1e-10);
             let cold = solver.solve_target(target).unwrap();
-            assert_eq!(swept.contact_map, cold.contact_map, "{target:?}");
+            assert_eq!(swept.fields.contact_map, cold.fields.contact_map, "{target:?}");
         }
     }
 }

@@ -30,15 +30,15 @@ fn areas() {
             for (fraction, solution) in fractions.into_iter().zip(swept) {
                 check(&solver, &solution, 1e-12);
                 let nodes = grid.nodes_in(fraction).unwrap();
-                assert_eq!(solution.state.contact_nodes, nodes);
+                assert_eq!(solution.contact.contact_nodes, nodes);
             }
             // Alone, and under the load that was found.
             let area = ContactTarget::AreaFraction(0.2);
             let alone = solver.solve_target(area).unwrap();
-            assert_eq!(alone.state.contact_nodes, 460);
-            let same = solver.solve_target(ContactTarget::Load(alone.state.load)).unwrap();
-            assert_eq!(same.contact_map, alone.contact_map);
-            assert!(relative(same.state.approach, alone.state.approach) < 1e-11);
+            assert_eq!(alone.contact.contact_nodes, 460);
+            let same = solver.solve_target(ContactTarget::Load(alone.contact.load)).unwrap();
+            assert_eq!(same.fields.contact_map, alone.fields.contact_map);
+            assert!(relative(same.contact.approach, alone.contact.approach) < 1e-11);
         }
     }
 }
@@ -56,9 +56,9 @@ fn mean_gaps() {
                 .build()
                 .unwrap();
             for load in [1e-4, 1e-2] {
-                let expected = solver.solve(load).unwrap().state;
+                let expected = solver.solve(load).unwrap().contact;
                 let target = ContactTarget::MeanGap(expected.mean_gap);
-                let found = solver.solve_target(target).unwrap().state;
+                let found = solver.solve_target(target).unwrap().contact;
                 assert!(relative(found.load, load) < 1e-8, "{found:?}");
             }
         }
@@ -78,7 +78,7 @@ fn mean_gaps_of_surfaces_that_barely_touch() {
             for digits in 3..=10 {
                 let mean_gap = unloaded * (1.0 - 0.1_f64.powi(digits));
                 let target = ContactTarget::MeanGap(mean_gap);
-                let state = solver.solve_target(target).unwrap().state;
+                let state = solver.solve_target(target).unwrap().contact;
                 let allowed = (1e-12 * state.approach).max(1e-14 * unloaded);
                 assert!((state.mean_gap - mean_gap).abs() <= allowed, "{state:?}");
             }
@@ -107,7 +107,7 @@ fn mean_gaps_where_little_is_left_to_approach() {
             let mean_gap = 0.1_f64.powi(digits) * unloaded;
             let solution = solver.solve_target(ContactTarget::MeanGap(mean_gap)).unwrap();
             check(&solver, &solution, tolerance);
-            let state = &solution.state;
+            let state = &solution.contact;
             // In the gauge that a kernel gets from its symbol, which is the one that is computed with.
             let own = plate.coefficient(0, 0).unwrap() * state.load / nodes as f64;
             assert!((state.mean_gap - mean_gap).abs() <= tolerance * own, "{state:?}");
@@ -145,7 +145,7 @@ fn unreachable_areas() {
     let mut sphere = solver(&map, &Kernel::free(grid, 1.0), 1e-12);
     for (asked, nearest) in [(5, 4), (10, 12), (11, 12)] {
         let area = ContactTarget::AreaFraction(f64::from(asked) / 256.0);
-        let nodes = sphere.solve_target(area).unwrap().state.contact_nodes;
+        let nodes = sphere.solve_target(area).unwrap().contact.contact_nodes;
         assert_eq!(nodes, nearest);
     }
 }
@@ -165,7 +165,7 @@ fn fewer_nodes_than_touch_first() {
         let targets = asked.map(|nodes| ContactTarget::AreaFraction(nodes as f64 / 256.0));
         for (solution, asked) in worn.sweep(targets).zip(asked) {
             let solution = solution.unwrap();
-            assert_eq!(solution.state.contact_nodes, plateau.max(asked));
+            assert_eq!(solution.contact.contact_nodes, plateau.max(asked));
             let steps = solution.effort.convolutions;
             assert!(steps < 1000, "{steps} convolutions for {asked} nodes");
         }

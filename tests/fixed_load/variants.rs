@@ -20,12 +20,12 @@ fn gauges_do_not_matter() {
                 let mut solver = solver(&map, &kernel.clone().in_gauge(factor), 1e-12);
                 let found = solver.solve(load).unwrap();
                 check(&solver, &found, 1e-12);
-                assert_eq!(found.contact_map, expected.contact_map);
+                assert_eq!(found.fields.contact_map, expected.fields.contact_map);
                 // The tolerance times the condition.
-                let error = (&found.pressure - &expected.pressure).amax();
-                assert!(error < 1e-10 * expected.max_pressure(), "{error:e}");
-                assert!(relative(found.state.approach, expected.state.approach) < 1e-10);
-                assert!(relative(found.state.energy, expected.state.energy) < 1e-10);
+                let error = (&found.fields.pressure - &expected.fields.pressure).amax();
+                assert!(error < 1e-10 * expected.fields.max_pressure(), "{error:e}");
+                assert!(relative(found.contact.approach, expected.contact.approach) < 1e-10);
+                assert!(relative(found.contact.energy, expected.contact.energy) < 1e-10);
                 // Rounding of what the gauge adds to C(0, 0).
                 let lengths = [&found, &expected].map(|solution| solution.certificate.length);
                 assert!(relative(lengths[0], lengths[1]) < 1e-10);
@@ -51,10 +51,10 @@ fn nested_or_not() {
                     .unwrap()
             };
             let (nested, plain) = (solve(true), solve(false));
-            assert_eq!(nested.contact_map, plain.contact_map);
+            assert_eq!(nested.fields.contact_map, plain.fields.contact_map);
             // The tolerance times the condition.
-            let error = (&nested.pressure - &plain.pressure).amax();
-            assert!(error < 1e-8 * plain.max_pressure(), "{error:e}");
+            let error = (&nested.fields.pressure - &plain.fields.pressure).amax();
+            assert!(error < 1e-8 * plain.fields.max_pressure(), "{error:e}");
             assert_eq!(plain.effort.coarse_convolutions, 0.0);
             assert!(nested.effort.coarse_convolutions > 0.0);
             // One an iteration, and some to begin and to end with.
@@ -78,7 +78,7 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
     let mut plainly =
         FixedLoadSolver::builder(&map, &plain).tolerance(1e-11).stiffness(false).build().unwrap();
     let mut without = plainly.solve(0.02).unwrap();
-    assert!(without.state.contact_stiffness.is_none() && without.pressure_rate.is_empty());
+    assert!(without.contact.contact_stiffness.is_none() && without.pressure_rate.is_empty());
     let next = plainly.solve_from(&without, 0.022).unwrap();
     check(&plainly, &next, 1e-11);
     plainly.add_stiffness(&mut without).unwrap();
@@ -87,11 +87,11 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
         let stiffnesses = [&mut state.contact_stiffness, &mut state.interfacial_stiffness];
         stiffnesses.map(|stiffness| stiffness.take().unwrap())
     };
-    let found = stiffnesses(&mut without.state);
-    for (found, expected) in found.into_iter().zip(stiffnesses(&mut expected.state)) {
+    let found = stiffnesses(&mut without.contact);
+    for (found, expected) in found.into_iter().zip(stiffnesses(&mut expected.contact)) {
         assert!((found / expected - 1.0).abs() < 1e-11);
     }
-    assert_eq!(without.state, expected.state);
+    assert_eq!(without.contact, expected.contact);
 }
 
 /// A body of which nothing is known but its symbol, positive on each wave of the grid. On coarser grids of odd numbers of
@@ -118,8 +118,8 @@ fn any_symbol_is_solved_from_coarser_grids() {
                 solution
             });
             // The solution is the only one: the tolerance times the condition.
-            let error = (&nested.pressure - &plain.pressure).amax();
-            assert!(error < 1e-7 * plain.max_pressure(), "{error:e}");
+            let error = (&nested.fields.pressure - &plain.fields.pressure).amax();
+            assert!(error < 1e-7 * plain.fields.max_pressure(), "{error:e}");
         }
     }
 }

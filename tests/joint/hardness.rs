@@ -176,18 +176,18 @@ fn single_loads_have_the_stiffness_of_the_path() {
         let greatest = history.states().last().unwrap().contact.load;
         for part in [0.031, 0.32, 0.77] {
             let mut solution = solver.solve(part * greatest).unwrap();
-            let refused = heat().of(&solution.state, Layering::HalfSpace);
+            let refused = heat().of(&solution.contact, Layering::HalfSpace);
             assert!(matches!(
                 refused,
                 Err(Error::Joint(JointError::NoUnloadingStiffness { yielded_nodes, .. })) if yielded_nodes > 0
             ));
             solver.add_unloading_stiffness(&mut solution).unwrap();
             let expected = history.at_load(part * greatest).unwrap();
-            assert_eq!(solution.state.contact_nodes, expected.contact.contact_nodes);
-            let [a, b] = [&solution.state, &expected.contact]
+            assert_eq!(solution.contact.contact_nodes, expected.contact.contact_nodes);
+            let [a, b] = [&solution.contact, &expected.contact]
                 .map(|contact| heat().of(contact, Layering::HalfSpace).unwrap().unwrap());
             assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
-            let [a, b] = [&solution.state, &expected.contact]
+            let [a, b] = [&solution.contact, &expected.contact]
                 .map(|contact| heat().of_interface(contact, Layering::HalfSpace).unwrap().unwrap());
             assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
         }

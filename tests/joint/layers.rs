@@ -1,7 +1,7 @@
 //! What follows from a path on homogeneous half-spaces alone is refused where the body is known to have layers.
 
 use asperity::bed::Bed;
-use asperity::creep::{Corners, Creep, Prony, Relaxation, ViscoelasticBed};
+use asperity::creep::{Creep, PiecewiseLinear, Prony, Relaxation, ViscoelasticBed};
 use asperity::joint::{Conduction, InterfaceTable};
 use asperity::kernel::{Base, Layer, Layered, LayeredBody, Layering, Theory};
 use asperity::loading::History;
@@ -35,11 +35,11 @@ fn refused(record: &LoadingRecord) -> [bool; 8] {
         }
     }
     let history = record.history();
-    let bed = Bed::of(record).unwrap();
+    let bed = Bed::of_record(record).unwrap();
     let last = bed.last_load();
     let friction = Friction::new(0.3, 1.2).unwrap();
     let prony = Prony::shares(&[(1.0, 0.5)]).unwrap();
-    let held = |value: f64| Corners::new([(0.0, value)]).unwrap();
+    let held = |value: f64| PiecewiseLinear::new([(0.0, value)]).unwrap();
     let approach = 0.5 * bed.approaches().last().unwrap();
     let heat = Conduction::thermal(1e11, 0.04).unwrap();
     let table = || InterfaceTable::builder(history);

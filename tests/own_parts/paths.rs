@@ -33,7 +33,7 @@ fn path<U: LinearUpdater>(kernel: &dyn InfluenceKernel, updater: U, window: usiz
         history.at_load(0.5 * (states[1].contact.load + states[2].contact.load)).unwrap(),
         states[states.len() - 1],
     ]
-    .map(|state| path.pressure_at(&state).unwrap());
+    .map(|state| path.fields_at(&state).unwrap().pressure);
     (states, order, pressures.to_vec())
 }
 

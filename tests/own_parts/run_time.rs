@@ -83,8 +83,8 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
                 let error = (state.contact.load / expected.contact.load - 1.0).abs();
                 assert!(error < 1e-6, "{context}: {error:e}");
 
-                let (pressure, gap) = (path.pressure()?, path.gap()?);
-                let (displacement, map) = (path.displacement()?, path.contact_map());
+                let (pressure, gap) = (path.fields()?.pressure, path.fields()?.gap);
+                let (displacement, map) = (path.fields()?.displacement, path.contact_map());
                 let load = pressure.sum() * grid.cell_area();
                 assert!((load / state.contact.load - 1.0).abs() < 1e-6, "{context}: {load}");
                 for field in [&pressure, &gap, &displacement] {
@@ -109,7 +109,7 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
             if load > states[66].contact.load * (1.0 + 1e-6) {
                 let solution = FixedLoadSolver::new(&surface, &kernel)?.solve(load)?;
                 let map = path_map(&path.contact_order()[..67], grid);
-                assert_eq!(solution.contact_map, map, "{surface_name}, {kernel_name}");
+                assert_eq!(solution.fields.contact_map, map, "{surface_name}, {kernel_name}");
             }
         }
     }

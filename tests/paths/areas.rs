@@ -47,7 +47,7 @@ fn paths_records_and_fixed_loads_round_alike() {
                 assert_eq!(path.end(), Some(end));
                 let target = ContactTarget::AreaFraction(fraction);
                 let solution = solver.solve_target(target).unwrap();
-                assert_eq!(solution.state.contact_nodes, expected, "{fraction}");
+                assert_eq!(solution.contact.contact_nodes, expected, "{fraction}");
             }
         }
         println!("{inexact} of {nodes} fractions fall short");

@@ -81,15 +81,15 @@ fn paths_end_exactly_at_their_limits() {
                 assert!(read(&history, beyond).is_none(), "{context}");
                 // Fields of the present state, which is the one at the limit.
                 assert_eq!(path.state(), Some(last));
-                let pressure = path.pressure().unwrap();
-                assert_eq!(path.max_pressure().unwrap(), pressure.max());
+                let pressure = path.fields().unwrap().pressure;
+                assert_eq!(path.fields().unwrap().max_pressure(), pressure.max());
                 let load = pressure.sum() * path.grid().cell_area();
                 assert!((load / last.contact.load - 1.0).abs() < 1e-12, "{context}");
                 let certificate = path.certificate().unwrap();
                 assert!(certificate.least_pressure >= -1e-12, "{context}");
                 assert!(certificate.least_gap >= -1e-12, "{context}");
                 assert!(certificate.greatest_contact_gap <= 1e-12, "{context}");
-                assert!(path.pressure_at(&events[step / 2]).is_ok());
+                assert!(path.fields_at(&events[step / 2]).map(|fields| fields.pressure).is_ok());
             }
         }
     }

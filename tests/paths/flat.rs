@@ -33,7 +33,7 @@ fn nothing_out_of_contact_is_no_gap_and_infinite_stiffness() {
 fn on_flat(punch: &FlatPunch, kernel: &dyn InfluenceKernel) {
     let nodes = kernel.grid().nodes();
     let fixed = FixedLoadSolver::builder(punch, kernel).tolerance(1e-12);
-    let fixed = fixed.build().unwrap().solve(1.0).unwrap().state;
+    let fixed = fixed.build().unwrap().solve(1.0).unwrap().contact;
     let is_full = |found: &LoadingState| {
         let context = format!("{found:?}");
         assert_eq!(found.contact.contact_nodes, nodes, "{context}");

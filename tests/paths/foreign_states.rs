@@ -7,7 +7,7 @@ use asperity::{Error, LoadingSolver, LoadingState};
 
 #[track_caller]
 fn assert_refused(path: &mut LoadingSolver, state: &LoadingState, context: &str) {
-    match path.pressure_at(state) {
+    match path.fields_at(state).map(|fields| fields.pressure) {
         Err(Error::NotOnPath { step, .. }) => assert_eq!(step, state.step),
         Err(error) => panic!("{context}: {error}"),
         Ok(_) => panic!("{context}: {state:?} was accepted"),
@@ -26,7 +26,7 @@ fn states_of_another_path_are_refused() {
             let context = format!("{name}, step {step}");
             let own = own.states();
             for state in [own[step - 1], half_way(own[step - 1], Some(own[step]))] {
-                assert!(path.pressure_at(&state).is_ok(), "{context}");
+                assert!(path.fields_at(&state).map(|fields| fields.pressure).is_ok(), "{context}");
             }
             let foreign = foreign.states();
             assert_refused(&mut path, &foreign[step - 1], &context);
@@ -37,7 +37,7 @@ fn states_of_another_path_are_refused() {
         let mut early = LoadingSolver::new(&surface, &kernel).unwrap();
         early.by_ref().take(10).last();
         let later = &own.states()[length / 2];
-        let error = early.pressure_at(later).unwrap_err();
+        let error = early.fields_at(later).map(|fields| fields.pressure).unwrap_err();
         assert!(matches!(error, Error::StateNotReached { .. }), "{error}");
     }
 }
@@ -57,12 +57,12 @@ fn states_beyond_their_interval_are_refused() {
             assert_refused(&mut path, &before, &context);
             // Inside the interval the same relations give states.
             let inside = loaded(state, 0.5 * (state.contact.load + next.contact.load));
-            assert!(path.pressure_at(&inside).is_ok(), "{context}");
+            assert!(path.fields_at(&inside).map(|fields| fields.pressure).is_ok(), "{context}");
         }
         // In full contact the line goes on.
         let last = all[all.len() - 1];
         let beyond = loaded(last, 100.0 * last.contact.load);
-        assert!(path.pressure_at(&beyond).is_ok(), "{name}");
+        assert!(path.fields_at(&beyond).map(|fields| fields.pressure).is_ok(), "{name}");
     }
 }
 
@@ -86,7 +86,7 @@ fn states_that_were_tampered_with_are_refused() {
     other.step = 40;
     assert_refused(&mut path, &other, "step");
     // And nothing of that harms the path.
-    let again = path.pressure_at(&state).unwrap();
+    let again = path.fields_at(&state).unwrap().pressure;
     let load = again.sum() * path.grid().cell_area();
     assert!((load / state.contact.load - 1.0).abs() < 1e-12);
 }

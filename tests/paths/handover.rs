@@ -2,7 +2,7 @@
 
 use crate::common::surface;
 use asperity::loading::{factor_seconds, iteration_seconds, last_factor};
-use asperity::updater::{Handover, LinearUpdater, Method, RecursiveCholesky};
+use asperity::updater::{Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, Error, Grid, LoadingSolver, LoadingState};
 
 fn path<U: LinearUpdater>(updater: U, budget: Option<usize>, nodes: usize) -> LoadingSolver<U> {
@@ -44,8 +44,8 @@ fn the_same_path_on_both_sides_of_the_seam() {
     let mut whole = path(RecursiveCholesky::new(), None, NODES);
     let expected: Vec<_> = whole.by_ref().map(Result::unwrap).collect();
     let early = expected[150];
-    let early_pressure = whole.pressure_at(&early).unwrap();
-    let pressure = whole.pressure().unwrap();
+    let early_pressure = whole.fields_at(&early).unwrap().pressure;
+    let pressure = whole.fields().unwrap().pressure;
     let fixed = path(Handover::new(), None, NODES).bytes();
     let (mut seams, mut cut) = (Vec::new(), 0);
     for budget in (1_500_000..5_500_000).step_by(500_000) {
@@ -70,8 +70,8 @@ fn the_same_path_on_both_sides_of_the_seam() {
             let last = states.last().copied().unwrap();
             assert_eq!(path.state(), Some(last));
             assert_eq!(path.contact_order().len(), states.len());
-            let found = path.pressure().unwrap();
-            let exact = whole.pressure_at(&last).unwrap();
+            let found = path.fields().unwrap().pressure;
+            let exact = whole.fields_at(&last).unwrap().pressure;
             assert!((&found - &exact).amax() <= 1e-9 * exact.amax(), "{context}");
             assert!(path.certificate().unwrap().least_gap > -1e-9, "{context}");
             // What is left is less than one more node with its window takes.
@@ -89,8 +89,8 @@ fn the_same_path_on_both_sides_of_the_seam() {
         seams.extend(seam);
         // Fields at the end, and at a state on the other side of the seam.
         for (found, expected) in [
-            (path.pressure().unwrap(), &pressure),
-            (path.pressure_at(&early).unwrap(), &early_pressure),
+            (path.fields().unwrap().pressure, &pressure),
+            (path.fields_at(&early).unwrap().pressure, &early_pressure),
         ] {
             assert!((found - expected).amax() <= 1e-5 * expected.amax(), "{context}");
         }
@@ -111,7 +111,6 @@ fn no_seam_without_need() {
 #[test]
 fn the_default_is_a_new_one() {
     let default = Handover::default();
-    assert!(matches!(default.method(), Method::FactorWhileItPays));
     assert_eq!(path(Handover::default(), None, 300).handed_over_at(), None);
     assert_eq!(default.bytes(100, 10), Handover::new().bytes(100, 10));
 }

@@ -187,12 +187,13 @@ fn states_fulfil_the_conditions() {
         for state in states.iter().step_by(23) {
             let context = format!("{name}, state {}", state.step);
             let (contact, plastic) = (state.contact, state.contact.plastic.unwrap());
-            let pressure = path.pressure_at(state).unwrap();
+            let pressure = path.fields_at(state).unwrap().pressure;
             let (map, yielded) =
-                (path.contact_map_at(state).unwrap(), path.yielded_map_at(state).unwrap());
+                (path.contact_map_at(state).unwrap(), path.fields_at(state).unwrap().yielded_map);
             assert_eq!(map.iter().filter(|is_in| **is_in).count(), contact.contact_nodes);
             assert_eq!(yielded.iter().filter(|is_in| **is_in).count(), plastic.yielded_nodes);
-            let (gap, depth) = (path.gap_at(state).unwrap(), path.plastic_depth_at(state).unwrap());
+            let (gap, depth) =
+                (path.fields_at(state).unwrap().gap, path.fields_at(state).unwrap().plastic_depth);
             for node in 0..grid().nodes() {
                 if yielded.as_slice()[node] {
                     assert!(map.as_slice()[node], "{context}");
@@ -400,11 +401,14 @@ fn records_of_paths_on_which_nodes_yield() {
             }
             let mut replayed = read.replay().unwrap();
             let state = record.states()[at / 2];
-            let [a, b] = [replayed.pressure_at(&state).unwrap(), path.pressure_at(&state).unwrap()];
+            let [a, b] = [
+                replayed.fields_at(&state).unwrap().pressure,
+                path.fields_at(&state).unwrap().pressure,
+            ];
             assert!((a - b).amax() <= 1e-7 * HARDNESS, "{name}, {at}");
             assert_eq!(
-                replayed.yielded_map_at(&state).unwrap(),
-                path.yielded_map_at(&state).unwrap()
+                replayed.fields_at(&state).unwrap().yielded_map,
+                path.fields_at(&state).unwrap().yielded_map
             );
             // It goes on, by iterations: the same events.
             for (found, expected) in replayed.by_ref().map(Result::unwrap).zip(&states[at..]) {
@@ -541,7 +545,7 @@ fn a_hardness_for_each_node() {
         });
         let mut path =
             LoadingSolver::builder(&heights, &*kernel).hardness_map(&map).build().unwrap();
-        let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+        let history = path.run().unwrap();
         // What does not yield carries all the load in the end.
         assert_eq!(path.end(), Some(LoadingEnd::FullContact));
         let yielding = map.iter().filter(|value| value.is_finite()).count();
@@ -558,9 +562,17 @@ fn a_hardness_for_each_node() {
             let k = (k..).find(wide).unwrap();
             let load = 0.5 * (states[k].contact.load + states[k + 1].contact.load);
             let (state, solution) = (history.at_load(load).unwrap(), solver.solve(load).unwrap());
-            let plastic = solution.plastic.unwrap();
-            assert_eq!(path.contact_map_at(&state).unwrap(), solution.contact_map, "{name} {k}");
-            assert_eq!(path.yielded_map_at(&state).unwrap(), plastic.yielded_map, "{name} {k}");
+            let plastic = solution.contact.plastic.unwrap();
+            assert_eq!(
+                path.contact_map_at(&state).unwrap(),
+                solution.fields.contact_map,
+                "{name} {k}"
+            );
+            assert_eq!(
+                path.fields_at(&state).unwrap().yielded_map,
+                solution.fields.yielded_map,
+                "{name} {k}"
+            );
             let found = state.contact.plastic.unwrap();
             let [work, volume] = [found.work - plastic.work, found.volume - plastic.volume];
             assert!(work.abs() <= 1e-8 * plastic.work, "{name} {k}: {work:e}");

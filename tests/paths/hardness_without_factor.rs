@@ -1,6 +1,6 @@
 //! Paths with a hardness and without a factor against those of a factor: the same events of both kinds, and how far the states may be off.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use asperity::loading::{ContactRule, History, LoadingBuilder, LoadingEnd};
 #[cfg(feature = "io")]
@@ -8,8 +8,9 @@ use asperity::record::LoadingRecord;
 use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{ContactEvent, ContactTarget, Error, Grid, LoadingSolver, LoadingState, Spectral};
+use asperity_testing::dense;
 use asperity_testing::surfaces::self_affine;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::without_factor::half_spaces;
 
@@ -228,6 +229,75 @@ fn flat_and_soft_surfaces() {
     }
 }
 
+/// Nodes that yield at once, and others that touch at once behind them, more of them than a window watches: stiffnesses of every contact in
+/// between are those of dense solutions.
+#[test]
+fn stiffnesses_among_nodes_that_yield_at_once_are_those_of_dense_solutions() {
+    let n = 24;
+    let grid = Grid::square(n, 1.0).unwrap();
+    // Of a flat surface one node in two yields; of a step the upper half, and the lower one touches behind it.
+    let on_step = |ix: usize, _: usize| ix < n / 2;
+    let every_other = |ix: usize, iy: usize| (ix + iy).is_multiple_of(2);
+    let flat = DMatrix::zeros(n, n);
+    let step = DMatrix::from_fn(n, n, |ix, iy| if on_step(ix, iy) { 0.0 } else { -5e-3 });
+    let soft = |is_soft: &dyn Fn(usize, usize) -> bool| {
+        DMatrix::from_fn(n, n, |ix, iy| if is_soft(ix, iy) { 0.02 } else { f64::INFINITY })
+    };
+    for (name, heights, hardness) in
+        [("flat", flat, soft(&every_other)), ("step", step, soft(&on_step))]
+    {
+        let surface = HeightMap::new(heights).unwrap();
+        for (half_space, kernel) in half_spaces(grid) {
+            let influence = dense::influence_matrix(&*kernel);
+            let builder = LoadingSolver::builder(&surface, &*kernel).hardness_map(&hardness);
+            let found = all(builder.updater(ConjugateGradient::new()));
+            let together = |k: usize| {
+                let approach = |state: &LoadingState| state.contact.approach;
+                k > 0 && approach(&found[k - 1]) == approach(&found[k])
+            };
+            let (mut elastic, mut yielded) = (Vec::new(), HashSet::new());
+            let (mut worst, mut compared) = (0.0_f64, 0);
+            for (k, state) in found.iter().enumerate() {
+                let node = grid.node(state.node.0, state.node.1).unwrap();
+                if state.event == ContactEvent::Yield {
+                    elastic.retain(|other| *other != node);
+                    yielded.insert(node);
+                } else {
+                    elastic.push(node);
+                }
+                if !together(k) || yielded.is_empty() || k % 7 > 0 || elastic.is_empty() {
+                    continue;
+                }
+                let rate = dense::restrict(&influence, &elastic).cholesky().unwrap();
+                let rate = rate.solve(&DVector::repeat(elastic.len(), 1.0));
+                let mut all = DVector::zeros(grid.nodes());
+                elastic.iter().zip(&rate).for_each(|(&node, &rate)| all[node] = rate);
+                let displaced = &influence * all;
+                let is_open = |node: &usize| !elastic.contains(node) && !yielded.contains(node);
+                let open = (0..grid.nodes()).filter(is_open);
+                let closing: f64 = open.map(|node| 1.0 - displaced[node]).sum();
+                let stiffness = grid.cell_area() * rate.sum();
+                let found = match state.contact.contact_stiffness {
+                    Some(found) => found / stiffness,
+                    None if closing < 1e-9 => continue,
+                    None => {
+                        let found = state.contact.interfacial_stiffness.unwrap();
+                        found * closing / grid.nodes() as f64 / stiffness
+                    }
+                };
+                worst = worst.max((found - 1.0).abs());
+                compared += 1;
+            }
+            println!("{name}, {half_space}: {worst:.1e} in {compared} states");
+            // Measured 6e-7, and 1.2e-4 of how fast the last gaps close. In full contact all stiffnesses are those of plateaus.
+            let has_gaps = name == "step" || half_space == "free";
+            let allowed = if half_space == "free" { 1e-5 } else { 1e-3 };
+            assert!(worst < allowed, "{name}, {half_space}: {worst}");
+            assert_eq!(compared > 20, has_gaps, "{name}, {half_space}: {compared}");
+        }
+    }
+}
+
 /// Each node has its own hardness, of some it is infinite.
 #[test]
 fn a_hardness_for_each_node() {
@@ -412,13 +482,18 @@ fn every_state_can_be_asked_for_its_fields() {
         }
         for state in states.iter().step_by(41).chain(states.last()) {
             assert_eq!(path.contact_map_at(state).unwrap(), exact.contact_map_at(state).unwrap());
-            assert_eq!(path.yielded_map_at(state).unwrap(), exact.yielded_map_at(state).unwrap());
+            assert_eq!(
+                path.fields_at(state).unwrap().yielded_map,
+                exact.fields_at(state).unwrap().yielded_map
+            );
             let [found, expected] =
-                [path.pressure_at(state).unwrap(), exact.pressure_at(state).unwrap()];
+                [path.fields_at(state).unwrap().pressure, exact.fields_at(state).unwrap().pressure];
             // Of the same contact at the same approach: gaps of 1e-10 of that, times a condition number.
             assert!((found - expected).amax() < 1e-7, "{name}, {}", state.step);
-            let [found, expected] =
-                [path.plastic_depth_at(state).unwrap(), exact.plastic_depth_at(state).unwrap()];
+            let [found, expected] = [
+                path.fields_at(state).unwrap().plastic_depth,
+                exact.fields_at(state).unwrap().plastic_depth,
+            ];
             assert!((found - &expected).amax() <= 1e-8 * expected.amax(), "{name}, {}", state.step);
         }
     }
@@ -470,7 +545,7 @@ fn the_default_hands_over_at_the_same_events() {
             let whole: Vec<_> = history.states().iter().copied().chain(rest).collect();
             compare(&format!("budget {more}, resumed at {k}"), &whole, &exact, &BETWEEN);
             // Iterations for an earlier state need as much room as those of the path.
-            let pressure = match path.pressure_at(&found[k / 2]) {
+            let pressure = match path.fields_at(&found[k / 2]).map(|fields| fields.pressure) {
                 Err(Error::MemoryBudget { .. }) if more < 3_000_000 => continue,
                 pressure => pressure.unwrap(),
             };
@@ -505,10 +580,14 @@ fn records_of_paths_without_a_factor() {
             let read = LoadingRecord::read_npz(&file).unwrap();
             std::fs::remove_file(&file).unwrap();
             assert_eq!(read.states(), record.states());
-            for mut again in [read.replay().unwrap(), builder().resume(read.history()).unwrap()] {
+            for mut again in
+                [read.replay().unwrap(), builder().resume(read.history()).unwrap().into_path()]
+            {
                 let state = record.states()[at / 2];
-                let [a, b] =
-                    [again.pressure_at(&state).unwrap(), path.pressure_at(&state).unwrap()];
+                let [a, b] = [
+                    again.fields_at(&state).unwrap().pressure,
+                    path.fields_at(&state).unwrap().pressure,
+                ];
                 assert!((a - b).amax() <= 1e-8, "{name}, {at}");
                 let rest: Vec<_> = again.by_ref().map(Result::unwrap).collect();
                 let whole: Vec<_> = record.states().iter().copied().chain(rest).collect();

@@ -34,7 +34,7 @@ fn errors_of_a_sphere(poisson: f64, thicknesses: [f64; 3]) -> [f64; 3] {
         let kernel = Layered::free(grid, LayeredBody::new(&[body], Base::Rigid).unwrap()).unwrap();
         let mut solver = FixedLoadSolver::new(&sphere, &kernel).unwrap();
         let found = solver.solve_approach(layer.sphere_approach(radius, 32.0)).unwrap();
-        found.state.load / layer.sphere_load(radius, 32.0) - 1.0
+        found.contact.load / layer.sphere_load(radius, 32.0) - 1.0
     })
 }
 
@@ -68,7 +68,7 @@ fn a_punch_on_a_thin_layer() {
             let radius = (cells as f64 / std::f64::consts::PI).sqrt();
             let mut solver = FixedLoadSolver::new(&disc, &kernel).unwrap();
             let found = solver.solve_approach(1e-3).unwrap();
-            found.state.load / 1e-3 / layer.punch_stiffness(radius) - 1.0
+            found.contact.load / 1e-3 / layer.punch_stiffness(radius) - 1.0
         });
         for pair in errors.windows(2) {
             // First order, what is left of the second, and the steps of the outline.
@@ -116,7 +116,7 @@ fn paths_on_coats_are_those_of_single_loads() {
                 FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-11).build().unwrap();
             for part in [4, 2, 1] {
                 let state = states[states.len() / part - 1];
-                let found = solver.solve(state.contact.load).unwrap().state;
+                let found = solver.solve(state.contact.load).unwrap().contact;
                 // The tolerance, times a condition number of some 1e2.
                 let error = found.mean_gap / state.contact.mean_gap - 1.0;
                 assert!(error.abs() < 1e-8, "{young} {error:e}");
@@ -154,7 +154,7 @@ fn the_mean_displacement_is_that_of_the_layers() {
                 );
             }
             let last = states[states.len() - 1];
-            let displacement = path.displacement().unwrap().mean();
+            let displacement = path.fields().unwrap().displacement.mean();
             let uniform = compliance * last.contact.mean_pressure();
             assert!((displacement - uniform).abs() <= 1e-10 * unloaded, "{displacement} {uniform}");
         }

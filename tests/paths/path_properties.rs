@@ -44,8 +44,8 @@ fn close(what: &str, a: f64, b: f64, tolerance: f64, scale: f64) {
 fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen {
     let state = path.state().unwrap();
     let grid = path.grid();
-    let (pressure, gap) = (path.pressure().unwrap(), path.gap().unwrap());
-    let displacement = path.displacement().unwrap();
+    let (pressure, gap) = (path.fields().unwrap().pressure, path.fields().unwrap().gap);
+    let displacement = path.fields().unwrap().displacement;
     let map = path.contact_map();
     let order = path.contact_order();
     let nodes = grid.nodes() as f64;
@@ -174,7 +174,7 @@ proptest! {
                 let approach = state.contact.approach + part * width;
                 let expected = dense::pressure(&kernel, contact, &gap, approach);
                 let inside = history.at_approach(approach).unwrap();
-                let pressure = path.pressure_at(&inside).unwrap();
+                let pressure = path.fields_at(&inside).unwrap().pressure;
                 // Scale: the pressure that the whole approach would cause on one cell.
                 let scale = approach / kernel_self(&kernel);
                 for (&node, &p) in contact.iter().zip(&expected) {
@@ -237,7 +237,7 @@ proptest! {
         for part in parts {
             let load = 1.2 * part * last.contact.load;
             let state = history.at_load(load).unwrap();
-            let pressure = path.pressure_at(&state).unwrap();
+            let pressure = path.fields_at(&state).unwrap().pressure;
             let displacement = convolution.convolve(&pressure).unwrap();
             let energy = 0.5 * cell * pressure.dot(&displacement);
             prop_assert_eq!(state.contact.load, load);
@@ -263,7 +263,7 @@ proptest! {
         while let Some(state) = path.next() {
             second.push(state.unwrap());
             path.certificate().unwrap();
-            path.pressure_at(&second[second.len() / 2]).unwrap();
+            path.fields_at(&second[second.len() / 2]).unwrap();
         }
         prop_assert_eq!(bits(&first), bits(&second));
     }
@@ -312,7 +312,7 @@ fn threads_do_not_change_a_bit() {
             let builder = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.25);
             let mut path = with_window(builder, window).build().unwrap();
             let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-            let pressure = path.pressure().unwrap();
+            let pressure = path.fields().unwrap().pressure;
             let pressure: Vec<u64> = pressure.iter().map(|p| p.to_bits()).collect();
             (bits(&states), pressure)
         })

@@ -28,7 +28,7 @@ fn the_approach_contains_the_mean_displacement() {
         let mean = mean_displacement(state.contact.load, &grid);
         let error = state.contact.mean_gap - (unloaded + mean - state.contact.approach);
         assert!(error.abs() <= 1e-12 * (unloaded + state.contact.approach), "{state:?}: {error:e}");
-        let displacement = path.displacement().unwrap().mean();
+        let displacement = path.fields().unwrap().displacement.mean();
         assert!((displacement - mean).abs() <= 1e-12 * mean, "{state:?}");
         // There is a base to approach: dW/dδ, which is the slope from event to event.
         let stiffness = state.contact.contact_stiffness.unwrap();
@@ -63,18 +63,18 @@ fn fixed_loads_agree_with_the_path() {
     let mut solver = FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-11).build().unwrap();
     for step in [5, 30, 90, 160, 230] {
         let expected = half_way(all[step - 1], Some(all[step]));
-        let pressure = path.pressure_at(&expected).unwrap();
+        let pressure = path.fields_at(&expected).unwrap().pressure;
         for solution in [
             solver.solve(expected.contact.load).unwrap(),
             solver.solve_approach(expected.contact.approach).unwrap(),
         ] {
-            let found = expected_like(expected, solution.state);
+            let found = expected_like(expected, solution.contact);
             // The tolerance, times a condition number of some 1e2.
             assert_close(&found, &expected, 1e-8, all[0].contact.mean_gap);
             assert!(found.contact.contact_stiffness.is_some());
-            let error = (&solution.pressure - &pressure).amax();
+            let error = (&solution.fields.pressure - &pressure).amax();
             assert!(error <= 1e-8 * pressure.amax(), "step {step}: {error:e}");
-            let mean = solution.displacement.mean();
+            let mean = solution.fields.displacement.mean();
             let error = mean / mean_displacement(found.contact.load, &grid) - 1.0;
             assert!(error.abs() < 1e-11, "step {step}: {error:e}");
         }

@@ -101,18 +101,18 @@ fn records_know_the_fields_of_their_states() {
     let history = record.history();
     let between = history.at_load(0.4 * (all[90].contact.load + all[91].contact.load)).unwrap();
     for state in [all[0], all[40], between, all[179]] {
-        let expected = path.pressure_at(&state).unwrap();
-        let found = replay.pressure_at(&state).unwrap();
+        let expected = path.fields_at(&state).unwrap().pressure;
+        let found = replay.fields_at(&state).unwrap().pressure;
         let greatest = expected.max();
         // Iterations end at a residual of 1e-10 of the approach.
         assert!((&found - &expected).amax() <= 1e-7 * greatest);
-        let gap = (replay.gap_at(&state).unwrap(), path.gap_at(&state).unwrap());
+        let gap = (replay.fields_at(&state).unwrap().gap, path.fields_at(&state).unwrap().gap);
         assert!((gap.0 - gap.1).amax() <= 1e-9 * state.contact.approach.max(1e-9));
         let contact = replay.contact_map_at(&state).unwrap();
         assert_eq!(contact, path.contact_map_at(&state).unwrap());
         assert_eq!(contact.iter().filter(|is_in| **is_in).count(), state.contact.contact_nodes);
     }
-    let beyond = replay.pressure_at(&all[180]);
+    let beyond = replay.fields_at(&all[180]).map(|fields| fields.pressure);
     assert!(matches!(beyond, Err(Error::StateNotReached { .. })));
 }
 
@@ -204,7 +204,7 @@ fn records_remember_what_was_asked() {
     let target = ContactTarget::AreaFraction(0.1234);
     let builder = LoadingSolver::builder(&surface, &kernel).until(target);
     let mut path = builder.build().unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     let record = LoadingRecord::new(&path, history).unwrap();
     assert_eq!(record.settings().targets, [target]);
 }
@@ -324,7 +324,7 @@ fn a_limit_is_no_event() {
     let load = 0.3 * all[99].contact.load + 0.7 * all[100].contact.load;
     let surface = rough(&grid(), 5);
     let mut path = LoadingSolver::builder(&surface, &kernel).max_load(load).build().unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     let record = LoadingRecord::new(&path, history).unwrap();
     assert_eq!(record.states().len(), 101);
     assert_eq!(record.contact().unwrap().len(), 100);
@@ -379,7 +379,7 @@ fn a_record_reads_as_a_path_that_stops_there() {
                 .tolerance(1e-10)
                 .build()
                 .unwrap();
-            let found = solver.solve(load).unwrap().state;
+            let found = solver.solve(load).unwrap().contact;
             let read = history.at_load(load).unwrap();
             assert_eq!(found.contact_nodes, read.contact.contact_nodes, "{name}");
             let error = (found.approach - read.contact.approach).abs();

@@ -36,7 +36,7 @@ fn record(load: Option<f64>) -> LoadingRecord {
         builder = builder.max_load(load);
     }
     let mut path = builder.build().unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     LoadingRecord::new(&path, history).unwrap()
 }
 
@@ -108,7 +108,7 @@ fn a_periodic_path_has_no_contact_stiffness() {
     let file = Scratch::new("periodic");
     let kernel = PeriodicBoussinesq::new(grid(), 1e9).unwrap();
     let mut path = LoadingSolver::new(&rough(&grid(), 7), &kernel).unwrap();
-    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let history = path.run().unwrap();
     let record = LoadingRecord::new(&path, history).unwrap();
     record.write_npz(&file.0, &[]).unwrap();
     let read = LoadingRecord::read_npz(&file.0).unwrap();

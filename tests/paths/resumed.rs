@@ -234,7 +234,7 @@ fn beyond_a_target() {
             [(ContactTarget::Load(load), 121), (ContactTarget::AreaFraction(fraction), 141)]
         {
             let mut path = builder().until(target).build().unwrap();
-            let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+            let history = path.run().unwrap();
             assert_eq!(history.events(), &all[..events], "{name} {target:?}");
             let record = through_a_file(&LoadingRecord::new(&path, history).unwrap());
             let (history, end) =

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use asperity::kernel::SemiPeriodicBoussinesq;
 #[cfg(feature = "io")]
-use asperity::loading::History;
 #[cfg(feature = "io")]
 use asperity::record::LoadingRecord;
 use asperity::reference::HertzLine;
@@ -48,18 +47,18 @@ fn a_cylinder_is_a_line_contact() {
             let found = solver.solve(line * period as f64).unwrap();
             // Cells of a sixtieth of the width: their error is of second order but for the edge, some (a/Δ)^(−3/2) = 0.006 of the
             // greatest pressure, and less in the middle.
-            let error = found.max_pressure() / hertz.max_pressure(line) - 1.0;
+            let error = found.fields.max_pressure() / hertz.max_pressure(line) - 1.0;
             assert!(error.abs() < 1e-3, "{along:?} {period}: {error:e}");
             let reference = kernel.reference_length();
             let logarithm = (2.0 * reference / half_width).ln() + 0.5;
             let approach = 2.0 * line / (PI * e_star) * logarithm;
             // Cells half a cell from the middle: (Δ/2)²/2R more of the height, 10⁻⁵ of the approach; and the edge again.
-            let error = found.state.approach / approach - 1.0;
+            let error = found.contact.approach / approach - 1.0;
             assert!(error.abs() < 1e-3, "{along:?} {period}: {error:e}");
             // dδ/dF = 2/(πE*) (ln(2R/a) + 1/2 − 1/2), since a² grows as F.
             let stiffness =
                 PI * e_star * period as f64 / (2.0 * (2.0 * reference / half_width).ln());
-            let found = found.state.contact_stiffness.unwrap();
+            let found = found.contact.contact_stiffness.unwrap();
             // The contact grows in steps of a cell on either side: between two of them a is too small by up to a cell, a thirtieth of it,
             // over a logarithm of 2.8 and more.
             assert!(
@@ -103,7 +102,7 @@ fn paths_are_those_of_single_loads() {
                 FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-11).build().unwrap();
             for part in [8, 3, 1] {
                 let state = states[states.len() / part - 1].contact;
-                let found = solver.solve(state.load).unwrap().state;
+                let found = solver.solve(state.load).unwrap().contact;
                 // The tolerance, times a condition number of some 1e2.
                 assert!((found.mean_gap / state.mean_gap - 1.0).abs() < 1e-8);
                 assert!((found.approach / state.approach - 1.0).abs() < 1e-8);
@@ -139,8 +138,8 @@ fn a_ridge_on_a_wide_periodic_grid_is_the_same() {
         let kernel = asperity::PeriodicBoussinesq::new(grid, 1e11).unwrap();
         let mut solver =
             FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-11).build().unwrap();
-        let found = solver.solve(expected.state.load).unwrap();
-        errors.push((found.max_pressure() / expected.max_pressure() - 1.0).abs());
+        let found = solver.solve(expected.contact.load).unwrap();
+        errors.push((found.fields.max_pressure() / expected.fields.max_pressure() - 1.0).abs());
     }
     // The plane images at the distance P across curve the displacement by (y/P)²: a quarter each time.
     for pair in errors.windows(2) {
@@ -159,7 +158,7 @@ fn records_are_gone_on_from() {
         let (_, whole) = followed(&kernel, &surface, 0.5, RecursiveCholesky::new());
         let builder = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.25);
         let mut path = builder.build().unwrap();
-        let begun: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+        let begun = path.run().unwrap();
         let record = LoadingRecord::new(&path, begun).unwrap();
         let name = format!("asperity-semi-{}-{along:?}.npz", std::process::id());
         let file = std::env::temp_dir().join(name);

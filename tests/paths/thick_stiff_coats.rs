@@ -203,7 +203,7 @@ fn no_window_ends_in_tension() {
             if path.waiting() > 0 {
                 continue;
             }
-            let pressure = path.pressure_at(&state).unwrap();
+            let pressure = path.fields_at(&state).unwrap().pressure;
             let rounding = 1e-9 * heights.matrix().amax() / kernel.coefficient(0, 0);
             let least = pressure.min();
             assert!(least >= -1e-4 * pressure.max() - rounding, "{least:e}: {state:?}");

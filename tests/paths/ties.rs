@@ -92,7 +92,7 @@ fn check_symmetric(shape: &dyn Surface, grid: Grid, diagonal: bool) -> usize {
             let map = path.contact_map();
             // Half-way to the next event, where no pressure of the contact is zero any more.
             let later = half_way(*state, states.get(k + 1).copied());
-            let pressure = path.pressure_at(&later).unwrap();
+            let pressure = path.fields_at(&later).unwrap().pressure;
             for image in images(&map, diagonal) {
                 assert_eq!(map, image, "{context}");
             }
@@ -139,7 +139,7 @@ fn flat_punches_fill_in_order_of_the_index() {
                 // Loaded, the pressure is symmetric, and highest in the corners.
                 let history: History = states.into_iter().collect();
                 let loaded = history.at_load(1.0).unwrap();
-                let pressure = path.pressure_at(&loaded).unwrap();
+                let pressure = path.fields_at(&loaded).unwrap().pressure;
                 for image in images(&pressure, nx == ny) {
                     assert!((&pressure - image).amax() <= SYMMETRIC * pressure.amax());
                 }

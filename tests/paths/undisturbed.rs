@@ -24,11 +24,10 @@ fn undisturbed<U: LinearUpdater + Clone>(
             let state = state.unwrap();
             states.push(state);
             if state.step % 3 == 0 {
-                path.pressure().unwrap();
-                path.gap().unwrap();
+                path.fields().unwrap();
                 path.certificate().unwrap();
-                path.pressure_at(&states[states.len() / 3]).unwrap();
-                path.pressure_at(&states[states.len() - 2]).unwrap();
+                path.fields_at(&states[states.len() / 3]).unwrap();
+                path.fields_at(&states[states.len() - 2]).unwrap();
                 assert_eq!(path.contact_map().shape(), path.grid().shape());
             }
         }
@@ -80,7 +79,7 @@ fn by_questions_across_the_seam() {
         while let Some(Ok(state)) = path.next() {
             states.push(state);
             path.certificate().unwrap();
-            path.pressure_at(&states[states.len() / 2]).unwrap();
+            path.fields_at(&states[states.len() / 2]).unwrap();
         }
         assert!(states == expected, "{extra} bytes");
         let seam = path.handed_over_at();

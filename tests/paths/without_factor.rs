@@ -196,7 +196,7 @@ fn every_state_can_be_asked_for_its_pressure() {
         let all: Vec<_> = path.by_ref().map(Result::unwrap).collect();
         assert_eq!(path.end(), Some(LoadingEnd::AreaFraction));
         for state in [&all[0], &all[10], &all[all.len() / 2], &all[all.len() - 2]] {
-            let pressure = path.pressure_at(state).unwrap();
+            let pressure = path.fields_at(state).unwrap().pressure;
             let load = pressure.sum() * grid.cell_area();
             assert!(
                 (load - state.contact.load).abs() <= BETWEEN.load * state.contact.load,
@@ -314,10 +314,10 @@ fn no_pressure_is_negative() {
     let mut states = Vec::new();
     while let Some(state) = path.next() {
         states.push(state.unwrap());
-        let least = path.pressure().unwrap().min();
+        let least = path.fields().unwrap().pressure.min();
         assert!(least >= 0.0, "{least:e}: {:?}", states.last());
     }
     for state in states.iter().step_by(29) {
-        assert!(path.pressure_at(state).unwrap().min() >= 0.0, "{state:?}");
+        assert!(path.fields_at(state).unwrap().pressure.min() >= 0.0, "{state:?}");
     }
 }

@@ -139,7 +139,7 @@ fn heights() {
 fn malformed_updaters() {
     for what in ["size", "pressure", "rate", "nan", "nan rate"] {
         // What is made of an answer.
-        let updater = Altered::new(RecursiveCholesky::new()).on_call(|inner, call| {
+        let updater = Altered::new(RecursiveCholesky::new()).on_call(move |inner, call| {
             call.ask(inner)?;
             match (what, call) {
                 ("size", Call::Watch { nodes, schur, .. }) => schur.resize(nodes.len() + 1)?,

@@ -21,14 +21,14 @@ fn a_path_dropped_midway() {
     for count in 2..whole.len() {
         let mut path = LoadingSolver::new(&surface, &kernel).unwrap();
         let history: History = path.by_ref().take(count).map(Result::unwrap).collect();
-        let pressure = path.pressure().unwrap();
+        let pressure = path.fields().unwrap().pressure;
         let record = LoadingRecord::new(&path, history).unwrap();
         drop(path);
         assert!(record.states() == &whole[..count]);
         let last = whole[count - 1];
         let between = record.history().at_load(0.6 * last.contact.load).unwrap();
         assert_eq!(between.contact.load, 0.6 * last.contact.load);
-        let replayed = record.replay().unwrap().pressure_at(&last).unwrap();
+        let replayed = record.replay().unwrap().fields_at(&last).unwrap().pressure;
         // Iterations in place of a factor: their tolerance of gaps, times a condition number below 10³.
         let error = (&replayed - &pressure).amax();
         assert!(error <= 1e-7 * pressure.max(), "{count}: {error:e}");
@@ -57,10 +57,10 @@ fn a_sweep_dropped_midway() {
             .map(Result::unwrap)
             .collect();
         let again = solver.solve(2.0).unwrap();
-        assert!(again.pressure == fresh.pressure, "{count}");
-        assert!(again.state == fresh.state, "{count}");
+        assert!(again.fields.pressure == fresh.fields.pressure, "{count}");
+        assert!(again.contact == fresh.contact, "{count}");
         for (solution, load) in swept.iter().zip([1.0, 1.5, 3.0]) {
-            assert_eq!(solution.state.load, load);
+            assert_eq!(solution.contact.load, load);
         }
     }
 }

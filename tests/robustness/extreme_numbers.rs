@@ -88,7 +88,7 @@ fn run(
     while let Some(state) = path.next() {
         states.push(state?);
         path.certificate()?;
-        path.gap()?;
+        path.fields()?;
     }
     assert!(path.next().is_none());
     let history: History = states.iter().copied().collect();
@@ -96,7 +96,7 @@ fn run(
         let readings =
             [history.at_load(target), history.at_approach(target), history.at_mean_gap(target)];
         for state in readings.iter().flatten() {
-            let pressure = path.pressure_at(state);
+            let pressure = path.fields_at(state).map(|fields| fields.pressure);
             // Full contact is read at any load, also where it or its pressures over- or underflow.
             let mean = state.contact.load / grid.nominal_area() / grid.nodes() as f64;
             let is_in_range = finite(state) && (state.contact.load == 0.0 || mean.is_normal());
@@ -304,7 +304,7 @@ fn extreme_loads_and_approaches_are_refused() {
                 for target in [ContactTarget::Load(value), ContactTarget::Approach(value)] {
                     match solver.solve_target(target) {
                         Ok(solution) => {
-                            let state = solution.state;
+                            let state = solution.contact;
                             for value in [state.approach, state.load] {
                                 assert!(value.is_normal() && value > 0.0, "{target:?}: {state:?}");
                             }
@@ -313,9 +313,9 @@ fn extreme_loads_and_approaches_are_refused() {
                             let free = kernel.boundary() == Boundary::Free;
                             assert!(state.energy.is_finite() && (state.energy > 0.0 || !free));
                             let fields = [
-                                &solution.pressure,
-                                &solution.gap,
-                                &solution.displacement,
+                                &solution.fields.pressure,
+                                &solution.fields.gap,
+                                &solution.fields.displacement,
                                 &solution.pressure_rate,
                             ];
                             let mut values = fields.into_iter().flatten();

@@ -128,7 +128,7 @@ fn compare(kernel: &dyn InfluenceKernel, seed: u64, corners: &[(f64, f64)]) -> [
     let mut at = (corners[0].0 * preload, 0.0);
     joint.to(at.0, 0.0).unwrap();
     let field = |path: &mut asperity::LoadingSolver, load: f64| {
-        let pressure = path.pressure_at(&bed.path_state(load).unwrap()).unwrap();
+        let pressure = path.fields_at(&bed.path_state(load).unwrap()).unwrap().pressure;
         DVector::from_column_slice(pressure.as_slice())
     };
     truth.limit = field(&mut path, at.0) * 0.3;

@@ -221,7 +221,7 @@ fn cycles_are_those_of_histories_and_of_nodes() {
             );
             let zones = joint.zones(&path, -amplitude).unwrap();
             assert!(relative(traction.sum() * grid.cell_area(), -amplitude) < 1e-12);
-            let pressure = path.pressure_at(&bed.path_state(load).unwrap()).unwrap();
+            let pressure = path.fields_at(&bed.path_state(load).unwrap()).unwrap().pressure;
             let greatest = pressure.max();
             let mut counts = [0; 3];
             for (node, zone) in zones.iter().enumerate() {

@@ -70,7 +70,7 @@ fn a_sphere_begins_to_yield() -> Result<(), Error> {
     let mut path = LoadingSolver::builder(&Paraboloid::new(radius)?, &half_space)
         .max_load(1.3 * load)
         .build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     let body = Subsurface::of(&half_space, 0.3)?;
     let found = body.first_yield(&mut path, &history, strength)?.unwrap();
     assert!((found.greatest.value / strength - 1.0).abs() <= FirstYield::TOLERANCE);

@@ -35,7 +35,7 @@ const KINDS: [Kind; 6] = [
         title: "Cycles",
         short: "Cycles",
         along: "",
-        charts: &["dissipation", "dissipated", "loss_factor"],
+        charts: &["dissipation", "dissipation", "loss_factor"],
     },
     Kind {
         file: "creep.csv",

@@ -1,10 +1,9 @@
 //! Pressure and gap at some states spread over the path, in few levels.
 
-use asperity::contact::Certificate;
+use asperity::contact::ContactFields;
 use asperity::loading::History;
 use asperity::nalgebra::DMatrix;
-use asperity::updater::LinearUpdater;
-use asperity::{Error, Grid, LoadingSolver, LoadingState};
+use asperity::{Error, Grid, LoadingPath};
 use serde_json::{Value, json};
 
 use crate::blob::deflated;
@@ -18,39 +17,6 @@ const FINENESS: [(f64, usize); 8] =
 const LETTERS: usize = 250_000;
 /// Letters that a page has at most for each node of a larger grid, if it can: 1 MB on 256 × 256 nodes.
 const LETTERS_PER_NODE: usize = 15;
-
-/// What computes the fields of a path: its solver, or a replay of its record.
-pub trait Fields {
-    /// Pressure \[Pa\] and gap \[m\] at a state.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`LoadingSolver::pressure_and_gap_at`].
-    fn pressure_and_gap_at(
-        &mut self,
-        state: &LoadingState,
-    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error>;
-
-    /// How well a state fulfils the conditions of contact.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`LoadingSolver::certificate_at`].
-    fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error>;
-}
-
-impl<U: LinearUpdater> Fields for LoadingSolver<U> {
-    fn pressure_and_gap_at(
-        &mut self,
-        state: &LoadingState,
-    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error> {
-        Self::pressure_and_gap_at(self, state)
-    }
-
-    fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
-        Self::certificate_at(self, state)
-    }
-}
 
 /// States of a path as places among all, at loads that grow as the cubes of whole numbers: first contact and full load both have some.
 fn chosen(history: &History) -> Vec<usize> {
@@ -78,8 +44,7 @@ impl Field {
     fn of(
         place: usize,
         in_contact: Vec<bool>,
-        pressure: &DMatrix<f64>,
-        gap: &DMatrix<f64>,
+        ContactFields { pressure, gap, .. }: &ContactFields,
     ) -> Self {
         let greatest = |field: &DMatrix<f64>| field.iter().copied().fold(0.0, f64::max);
         let most = (greatest(pressure), greatest(gap));
@@ -105,15 +70,15 @@ pub(crate) fn of(
     grid: &Grid,
     history: &History,
     taken: usize,
-    fields: &mut dyn Fields,
+    path: &mut LoadingPath,
 ) -> Result<(Value, Option<DMatrix<f64>>), Error> {
     let contact_at = contact_at(grid, history);
     let (mut found, mut last) = (Vec::new(), None);
     for place in chosen(history) {
         let Some(state) = history.states().get(place) else { continue };
-        let (pressure, gap) = fields.pressure_and_gap_at(state)?;
-        found.push(Field::of(place, contact_at(place), &pressure, &gap));
-        last = Some(pressure);
+        let fields = path.fields_at(state)?;
+        found.push(Field::of(place, contact_at(place), &fields));
+        last = Some(fields.pressure);
     }
     let room = LETTERS.max((LETTERS_PER_NODE * grid.nodes()).saturating_sub(taken));
     let mut page = Value::Null;

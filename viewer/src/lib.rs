@@ -2,7 +2,6 @@
 //! charts with a cursor that follows it, and what the record says of surface, bodies and exactness.
 //!
 //! ```
-//! use asperity::loading::History;
 //! use asperity::record::LoadingRecord;
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 //! use asperity_report::{Report, Source};
@@ -10,7 +9,7 @@
 //! # fn main() -> Result<(), asperity::Error> {
 //! let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
-//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //! let record = LoadingRecord::new(&path, history)?;
 //! let mut report = Report::new();
 //! report.add(Source::new("ground steel", &record).computed_by(&mut path))?;
@@ -31,19 +30,18 @@ mod page;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use asperity::Error;
 use asperity::nalgebra::DMatrix;
 use asperity::record::LoadingRecord;
+use asperity::{Error, LoadingPath};
 use serde_json::{Value, json};
 
 pub use facts::reason;
-pub use fields::Fields;
 
 /// A path for a page.
 pub struct Source<'a> {
     name: String,
     record: &'a LoadingRecord,
-    fields: Option<&'a mut dyn Fields>,
+    path: Option<&'a mut LoadingPath>,
     folders: Vec<(PathBuf, Option<SystemTime>)>,
 }
 
@@ -51,13 +49,13 @@ impl<'a> Source<'a> {
     /// The path of a record, under a name for people.
     #[must_use]
     pub fn new(name: impl Into<String>, record: &'a LoadingRecord) -> Self {
-        Self { name: name.into(), record, fields: None, folders: Vec::new() }
+        Self { name: name.into(), record, path: None, folders: Vec::new() }
     }
 
     /// With what computes its fields: the path itself, if it is there. Otherwise the record is replayed.
     #[must_use]
-    pub fn computed_by(mut self, fields: &'a mut dyn Fields) -> Self {
-        self.fields = Some(fields);
+    pub fn computed_by(mut self, path: &'a mut LoadingPath) -> Self {
+        self.path = Some(path);
         self
     }
 
@@ -117,7 +115,7 @@ impl Report {
     ///
     /// [`Error::OutOfRange`] for a record without a state; those of [`LoadingRecord::contact`].
     pub fn add(&mut self, source: Source<'_>) -> Result<(), Error> {
-        let Source { name, record, fields, folders } = source;
+        let Source { name, record, path, folders } = source;
         let grid = record.grid();
         let Some(last) = record.states().last() else {
             return Err(Error::OutOfRange {
@@ -138,8 +136,8 @@ impl Report {
         let texts =
             [&events, &heights].into_iter().chain(&panels).map(|part| part.to_string().len());
         let taken = page::letters() + texts.sum::<usize>();
-        let computed = match fields {
-            Some(fields) => Computed::by(fields, record, taken),
+        let computed = match path {
+            Some(path) => Computed::by(path, record, taken),
             None => record.replay().and_then(|mut replay| Computed::by(&mut replay, record, taken)),
         };
         let computed = computed.unwrap_or_else(|error| {
@@ -192,10 +190,10 @@ struct Computed {
 }
 
 impl Computed {
-    fn by(fields: &mut dyn Fields, record: &LoadingRecord, taken: usize) -> Result<Self, Error> {
-        let (found, pressure) = fields::of(&record.grid(), record.history(), taken, fields)?;
+    fn by(path: &mut LoadingPath, record: &LoadingRecord, taken: usize) -> Result<Self, Error> {
+        let (found, pressure) = fields::of(&record.grid(), record.history(), taken, path)?;
         let certificate = match record.states().last() {
-            Some(last) => facts::certificate(&fields.certificate_at(last)?, last),
+            Some(last) => facts::certificate(&path.certificate_at(last)?, last),
             None => Vec::new(),
         };
         Ok(Self { fields: found, certificate, pressure })

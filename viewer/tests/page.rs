@@ -35,7 +35,7 @@ fn record_of(
         builder = builder.hardness(hardness);
     }
     let mut path = builder.build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     LoadingRecord::new(&path, history)
 }
 
@@ -187,11 +187,9 @@ fn fields_are_those_of_their_states() -> Result<(), Error> {
     let mut replay = record.replay()?;
     for (state, left) in states.iter().zip(left.chunks(32 * 32)) {
         let place = state["event"].as_u64().unwrap() as usize;
-        let (pressure, gap) = replay.pressure_and_gap_at(&record.states()[place])?;
-        assert_eq!(pressure, replay.pressure_at(&record.states()[place])?);
-        assert_eq!(gap, replay.gap_at(&record.states()[place])?);
-        let map = replay.contact_map_at(&record.states()[place])?;
-        let is_in: Vec<bool> = map.iter().copied().collect();
+        let fields = replay.fields_at(&record.states()[place])?;
+        let (pressure, gap) = (fields.pressure, fields.gap);
+        let is_in: Vec<bool> = fields.contact_map.iter().copied().collect();
         let (greatest, widest) =
             (state["pressure"].as_f64().unwrap(), state["gap"].as_f64().unwrap());
         assert_eq!((greatest, widest), (pressure.max(), gap.max()));
@@ -222,7 +220,7 @@ fn the_page_of_a_rough_surface_is_small() -> Result<(), Error> {
     let surface = HeightMap::new(heights)?;
     let kernel = Boussinesq::new(grid, 1e9)?;
     let mut path = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.3).build()?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     let record = LoadingRecord::new(&path, history)?;
     let page = page_of("noise", &record)?;
     let fields = &data_of(&page)["records"][0]["fields"];

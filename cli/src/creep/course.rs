@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::creep::{Corners, Course, Prony, Steps};
+use asperity::creep::{ControlHistory, PiecewiseLinear, Prony, Steps};
 use asperity_cli::outcome::Failure;
 
 use super::Options;
@@ -10,7 +10,7 @@ use super::Options;
 /// What to follow.
 pub(super) struct Task {
     pub(super) prony: Prony,
-    pub(super) course: Course,
+    pub(super) course: ControlHistory,
     pub(super) steps: Steps,
     pub(super) end: f64,
     pub(super) cycles: Option<Cycles>,
@@ -58,44 +58,44 @@ impl Task {
     }
 }
 
-fn course(options: &Options) -> Result<Course, Failure> {
+fn course(options: &Options) -> Result<ControlHistory, Failure> {
     let failed = |error| Failure::new("this is no history", error);
     let put_on = |value: f64| match options.ramp {
-        Some(duration) => Corners::ramp(value, duration),
-        None => Corners::step(value),
+        Some(duration) => PiecewiseLinear::ramp(value, duration),
+        None => PiecewiseLinear::step(value),
     };
     match (options.load, options.approach, &options.history) {
-        (Some(load), _, _) => put_on(load).map(Course::Load).map_err(failed),
-        (_, Some(approach), _) => put_on(approach).map(Course::Approach).map_err(failed),
+        (Some(load), _, _) => put_on(load).map(ControlHistory::Load).map_err(failed),
+        (_, Some(approach), _) => put_on(approach).map(ControlHistory::Approach).map_err(failed),
         (_, _, Some(file)) => read(file),
         _ => Err(Failure::request("give --load, --approach or --history")),
     }
 }
 
 /// A history from a file.
-fn read(file: &Path) -> Result<Course, Failure> {
+fn read(file: &Path) -> Result<ControlHistory, Failure> {
     let name = file.display();
     let text = std::fs::read_to_string(file)
         .map_err(|error| Failure::new(format!("cannot read {name}"), error))?;
     parse(&text).map_err(|what| Failure::request(format!("{name}: {what}")))
 }
 
-fn parse(text: &str) -> Result<Course, String> {
+fn parse(text: &str) -> Result<ControlHistory, String> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text.lines().zip(1..).map(|(line, number)| (line.trim(), number));
     let mut lines = lines.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
     let header = lines.next().map_or("", |(line, _)| line);
     let names: Vec<String> = header.split(',').map(|name| name.trim().to_lowercase()).collect();
-    let make: fn(Corners) -> Course = match names.iter().map(String::as_str).collect::<Vec<_>>()[..]
-    {
-        ["time", "load"] => Course::Load,
-        ["time", "approach"] => Course::Approach,
-        _ => {
-            return Err(format!(
-                "the first line must be `time,load` or `time,approach`, but is `{header}`"
-            ));
-        }
-    };
+    let make: fn(PiecewiseLinear) -> ControlHistory =
+        match names.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+            ["time", "load"] => ControlHistory::Load,
+            ["time", "approach"] => ControlHistory::Approach,
+            _ => {
+                return Err(format!(
+                    "the first line must be `time,load` or `time,approach`, but is `{header}`"
+                ));
+            }
+        };
     let mut corners = Vec::new();
     for (line, number) in lines {
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
@@ -107,7 +107,7 @@ fn parse(text: &str) -> Result<Course, String> {
             parsed.ok_or_else(|| format!("line {number}, `{line}`, is no pair of numbers"))?;
         corners.push(corner);
     }
-    Corners::new(corners).map(make).map_err(|error| error.to_string())
+    PiecewiseLinear::new(corners).map(make).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]
@@ -117,9 +117,9 @@ mod tests {
     #[test]
     fn histories_are_read() {
         let read = parse("\u{feff}# made by hand\nTime, Load\r\n0,0\n\n0.5, 2e2\n0.5,100\n");
-        let expected = Corners::new([(0.0, 0.0), (0.5, 200.0), (0.5, 100.0)]);
-        assert_eq!(read.ok(), expected.ok().map(Course::Load));
-        assert!(matches!(parse("time,approach\n0,1e-6"), Ok(Course::Approach(_))));
+        let expected = PiecewiseLinear::new([(0.0, 0.0), (0.5, 200.0), (0.5, 100.0)]);
+        assert_eq!(read.ok(), expected.ok().map(ControlHistory::Load));
+        assert!(matches!(parse("time,approach\n0,1e-6"), Ok(ControlHistory::Approach(_))));
         for (bad, word) in [
             ("", "first line"),
             ("0,1\n1,2", "first line"),

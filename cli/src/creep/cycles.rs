@@ -37,7 +37,7 @@ impl Sweep {
     pub(super) fn new(record: &LoadingRecord, task: &Task, cycles: &Cycles) -> Result<Self, Error> {
         let creep = task.prony.creep_at(f64::INFINITY);
         let greatest = creep * (cycles.mean + cycles.amplitude);
-        let whole = Bed::of(record)?;
+        let whole = Bed::of_record(record)?;
         // A path that is not enough says so before any cycle; bodies that flow are refused by the bed.
         let ends = if greatest.is_finite() {
             let low = whole.at_load(creep * (cycles.mean - cycles.amplitude))?.contact_nodes;
@@ -61,7 +61,7 @@ impl Sweep {
 
     /// The cycle that loses most.
     pub(super) fn worst(&self) -> Option<&Cycle> {
-        self.cycles.iter().max_by(|a, b| a.dissipated.total_cmp(&b.dissipated))
+        self.cycles.iter().max_by(|a, b| a.dissipation.total_cmp(&b.dissipation))
     }
 
     /// Whether so few nodes join and leave in a cycle that the loss depends on the grid.
@@ -71,7 +71,7 @@ impl Sweep {
 
     pub(super) fn write(&self, name: &Path) -> Result<PathBuf, Failure> {
         let mut text = String::from(
-            "frequency,amplitude,approach_amplitude,dissipated,stiffness,loss_factor,cycles,distance\n",
+            "frequency,amplitude,approach_amplitude,dissipation,stiffness,loss_factor,cycles,distance\n",
         );
         for cycle in &self.cycles {
             // Writing to a text cannot fail.
@@ -81,7 +81,7 @@ impl Sweep {
                 1.0 / cycle.period,
                 cycle.amplitude,
                 cycle.approach_amplitude,
-                cycle.dissipated,
+                cycle.dissipation,
                 cycle.stiffness,
                 cycle.loss_factor,
                 cycle.cycles,
@@ -115,7 +115,7 @@ impl Sweep {
         let (lowest, highest) =
             (worst.mean_load - worst.amplitude, worst.mean_load + worst.amplitude);
         let frequency = |cycle: &Cycle| 1.0 / cycle.period;
-        let lost = self.cycles.iter().map(|cycle| (frequency(cycle), cycle.dissipated));
+        let lost = self.cycles.iter().map(|cycle| (frequency(cycle), cycle.dissipation));
         let charts = [
             Chart {
                 title: "cycles of load".to_string(),
@@ -128,7 +128,7 @@ impl Sweep {
             Chart {
                 title: format!("energy lost in a cycle of ±{}", quantity(worst.amplitude, "N", 3)),
                 x: Axis::logarithmic("frequency", "Hz", frequency(slow), frequency(fast)),
-                y: Axis::linear("energy lost in a cycle", "J", 0.0, 1.1 * worst.dissipated),
+                y: Axis::linear("energy lost in a cycle", "J", 0.0, 1.1 * worst.dissipation),
                 series: vec![
                     Series::new("", BLUE, Style::Line, lost.clone()),
                     Series::new("", BLUE, Style::Dots, lost),

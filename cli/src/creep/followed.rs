@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::bed::Bed;
-use asperity::creep::{Course, Creep, CreepState, Relaxation, ViscoelasticBed};
+use asperity::creep::{ControlHistory, Creep, CreepState, Relaxation, ViscoelasticBed};
 use asperity::patches::{Connectivity, contact_sequence};
 use asperity::record::LoadingRecord;
 use asperity::{BedError, ContactEvent, CreepError, Error};
@@ -81,13 +81,13 @@ impl<'a> Followed<'a> {
     fn along(bed: &'a Bed<'a>, task: &Task) -> Result<Self, Error> {
         let times = task.steps.times(&task.prony, task.course.corners(), task.end)?;
         let (solution, recedes, knots) = match &task.course {
-            Course::Load(load) => {
+            ControlHistory::Load(load) => {
                 let creep = Creep::new(bed, &task.prony, load)?;
                 let recedes = creep.recession().map(|recession| recession.time);
                 let knots = creep.times();
                 (Solution::Creep(creep), recedes, knots)
             }
-            Course::Approach(approach) => {
+            ControlHistory::Approach(approach) => {
                 let relaxation = Relaxation::new(bed, &task.prony, approach)?;
                 let (recedes, knots) = (relaxation.recession(), relaxation.times());
                 (Solution::Relaxation(relaxation), recedes, knots)
@@ -155,12 +155,12 @@ impl<'a> Followed<'a> {
             (Solution::Creep(creep), _) => {
                 format!("--max-load {}", at_least(creep.effective_load(task.end), 5))
             }
-            (_, Course::Approach(approach)) => {
+            (_, ControlHistory::Approach(approach)) => {
                 let values = approach.corners().iter().map(|corner| corner.1);
                 format!("--max-approach {}", at_least(values.fold(0.0, f64::max), 5))
             }
             // To full contact, behind which all is linear.
-            (_, Course::Load(_)) => "--max-area-fraction 1".to_string(),
+            (_, ControlHistory::Load(_)) => "--max-area-fraction 1".to_string(),
         };
         let reached = match until {
             0.0 => "the path is not enough for this history, from its beginning".to_string(),
@@ -198,9 +198,10 @@ impl<'a> Followed<'a> {
             return Ok(Vec::new());
         };
         let (pressure, gap) = match &self.solution {
-            Solution::Creep(creep) => {
-                (creep.pressure(last.time, pieces)?, path.gap_at(&creep.path_state(last.time)?)?)
-            }
+            Solution::Creep(creep) => (
+                creep.pressure(last.time, pieces)?,
+                path.fields_at(&creep.path_state(last.time)?)?.gap,
+            ),
             Solution::Relaxation(relaxation) => {
                 (relaxation.pressure(last.time, pieces)?, relaxation.gap(last.time, &mut path)?)
             }
@@ -230,7 +231,11 @@ fn grown(times: &[f64], at: impl Fn(f64) -> Result<CreepState, Error>) -> Result
 }
 
 /// The same by the bed.
-fn through(contact: &mut ViscoelasticBed, course: &Course, times: &[f64]) -> Result<Part, Error> {
+fn through(
+    contact: &mut ViscoelasticBed,
+    course: &ControlHistory,
+    times: &[f64],
+) -> Result<Part, Error> {
     let mut states: Vec<CreepState> = Vec::with_capacity(times.len());
     for &time in times {
         match contact.follow(course, &[time]) {

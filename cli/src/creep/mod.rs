@@ -34,7 +34,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
     let failed = |error| Failure::new("cannot let this contact creep", error);
     let task = Task::new(options)?;
-    let bed = Bed::of(&record).map_err(failed)?;
+    let bed = Bed::of_record(&record).map_err(failed)?;
     let followed = Followed::new(&bed, &task)?;
     let passages = followed.passages(&record, options.connectivity()).map_err(failed)?;
     let sweep = task.cycles.as_ref().map(|cycles| Sweep::new(&record, &task, cycles));

@@ -48,7 +48,7 @@ pub(super) fn object(
                 "mean_load": cycle.mean_load,
                 "amplitude": cycle.amplitude,
                 "approach_amplitude": cycle.approach_amplitude,
-                "dissipated": cycle.dissipated,
+                "dissipation": cycle.dissipation,
                 "loss_factor": cycle.loss_factor,
             })
         });

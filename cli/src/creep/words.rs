@@ -1,6 +1,6 @@
 //! What is printed.
 
-use asperity::creep::{Course, CreepState};
+use asperity::creep::{ControlHistory, CreepState};
 use asperity::{CreepError, Error};
 use asperity_cli::number::{quantity, significant};
 use asperity_cli::{say, speech};
@@ -72,8 +72,8 @@ fn course(options: &Options, task: &Task) {
         }
         (_, _, Some(file)) => {
             let what = match task.course {
-                Course::Load(_) => "load",
-                Course::Approach(_) => "approach",
+                ControlHistory::Load(_) => "load",
+                ControlHistory::Approach(_) => "approach",
             };
             let corners = task.course.corners().corners().len();
             say!("history    {what} with {corners} corners from {}, to {end}", file.display());
@@ -138,7 +138,7 @@ fn cycles(sweep: &Result<Sweep, Error>) {
                 "cycles     of ±{} around the load lose most at {}: {}, loss factor {}",
                 quantity(worst.amplitude, "N", 3),
                 quantity(1.0 / worst.period, "Hz", 2),
-                quantity(worst.dissipated, "J", 3),
+                quantity(worst.dissipation, "J", 3),
                 significant(worst.loss_factor, 3)
             );
             if sweep.is_coarse() {

@@ -13,8 +13,7 @@ use std::path::PathBuf;
 use asperity::leak::{Leak, LeakCurve, Seal};
 use asperity::record::LoadingRecord;
 use asperity::surface::Axis;
-use asperity::updater::ConjugateGradient;
-use asperity::{LoadingSolver, LoadingState, Warning};
+use asperity::{LoadingPath, LoadingState, Warning};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
@@ -87,7 +86,7 @@ impl From<Along> for Axis {
 /// A record, its path, and what leaks.
 struct Work {
     record: LoadingRecord,
-    path: LoadingSolver<ConjugateGradient>,
+    path: LoadingPath,
     seal: Seal,
 }
 

@@ -1,6 +1,7 @@
 //! One state of a path, with its fields.
 
 use asperity::LoadingState;
+use asperity::contact::ContactFields;
 use asperity::patches::{Connectivity, Patch, PatchLoad, Patches};
 use asperity::record::LoadingRecord;
 use asperity_cli::number::{counted, quantity};
@@ -51,9 +52,8 @@ impl Moment {
     ) -> Result<Self, Failure> {
         let failed = |error| Failure::new("cannot compute the fields of the state", error);
         let mut path = record.replay().map_err(failed)?;
-        let contact_map = path.contact_map_at(&state).map_err(failed)?;
-        let pressure = path.pressure_at(&state).map_err(failed)?;
-        let gap = path.gap_at(&state).map_err(failed)?;
+        let fields = path.fields_at(&state).map_err(failed)?;
+        let ContactFields { contact_map, pressure, gap, .. } = fields;
         let (grid, boundary) = (record.grid(), record.kernel().boundary);
         let found = Patches::new(&contact_map, &grid, boundary, connectivity).map_err(failed)?;
         let loads = found.loads(&pressure).map_err(failed)?;

@@ -228,8 +228,11 @@ impl End {
         let solution = builder.build().and_then(|mut solver| solver.solve_target(solved));
         let (contact, yielded) = match solution {
             Ok(solution) => {
-                let contact = solution.state.contact_nodes as f64;
-                (contact, solution.plastic.map_or(0.0, |p| p.yielded_nodes() as f64 / contact))
+                let contact = solution.contact.contact_nodes as f64;
+                (
+                    contact,
+                    solution.contact.plastic.map_or(0.0, |p| p.yielded_nodes as f64 / contact),
+                )
             }
             Err(_) => (nodes * theory.area(target), theory.yielded()),
         };

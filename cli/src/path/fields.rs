@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use asperity::contact::ContactFields;
 use asperity::io::{write_gsf, write_npy, write_vti};
 use asperity::{Grid, SurfaceError};
 use clap::ValueEnum;
@@ -27,12 +28,10 @@ pub(crate) type Fields = Vec<(&'static str, DMatrix<f64>)>;
 /// Those of the present state.
 pub(crate) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
     let failed = |error| Failure::new("cannot compute the fields of the last state", error);
-    let mut fields = vec![
-        ("pressure", solver.pressure().map_err(failed)?),
-        ("gap", solver.gap().map_err(failed)?),
-    ];
+    let ContactFields { pressure, gap, plastic_depth, .. } = solver.fields().map_err(failed)?;
+    let mut fields = vec![("pressure", pressure), ("gap", gap)];
     if solver.hardness_map().is_some() {
-        fields.push(("plastic_depth", solver.plastic_depth().map_err(failed)?));
+        fields.push(("plastic_depth", plastic_depth));
     }
     Ok(fields)
 }

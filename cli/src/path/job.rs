@@ -194,6 +194,7 @@ impl Job {
             None => builder.build(),
             Some(history) => builder.resume(history),
         }
+        .map(LoadingSolver::into_path)
         .map_err(|error| {
             no_room(
                 "cannot set up the path".to_string(),

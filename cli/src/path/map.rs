@@ -9,8 +9,8 @@ use asperity_cli::outcome::Failure;
 
 /// Draws the present state of a path into a directory.
 pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<PathBuf, Failure> {
-    let pressure = solver
-        .pressure()
+    let fields = solver
+        .fields()
         .map_err(|error| Failure::new("cannot compute the pressure for the map", error))?;
     let Some(state) = solver.state() else {
         return Err(Failure::request("there is no state to draw a map of"));
@@ -18,9 +18,9 @@ pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<P
     contact_map::draw(
         &job.grid(),
         &state.contact,
-        &pressure,
-        &solver.contact_map(),
-        job.has_hardness().then(|| solver.yielded_map()).as_ref(),
+        &fields.pressure,
+        &fields.contact_map,
+        job.has_hardness().then_some(&fields.yielded_map),
         &directory.join("contact_map.png"),
     )
 }

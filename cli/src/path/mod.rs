@@ -27,8 +27,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
 use asperity::patches::ContactEdge;
-use asperity::updater::LinearUpdater;
-use asperity::{LoadingSolver, LoadingState};
+use asperity::{LoadingPath, LoadingState};
 use asperity_cli::number::counted;
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, note, panel, say, speech};
@@ -46,7 +45,7 @@ use joint::Named;
 pub(crate) use options::Options;
 
 /// The path, whatever updater it has.
-type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
+type Solver = LoadingPath;
 
 /// Follows one path, or that of each seed, with the options that were given.
 pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> {

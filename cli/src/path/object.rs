@@ -29,7 +29,7 @@ pub(super) fn print(
             "step": states.last().map(|state| state.step),
             "load": contact.map(|c| c.load),
             "mean_pressure": contact.map(|c| c.mean_pressure()),
-            "max_pressure": solver.max_pressure().map_err(failed)?,
+            "max_pressure": solver.fields().map_err(failed)?.max_pressure(),
             "contact_nodes": contact.map(|c| c.contact_nodes),
             "contact_area": contact.map(|c| c.contact_area),
             "contact_area_fraction": contact.map(|c| c.contact_area_fraction),

@@ -42,7 +42,7 @@ pub(super) fn print(
     let mut failed = Ok(());
     let mut greatest = Vec::new();
     for state in &rows {
-        greatest.push(match solver.pressure_at(state) {
+        greatest.push(match solver.fields_at(state).map(|fields| fields.pressure) {
             Ok(pressure) => pressure.iter().copied().fold(0.0, f64::max),
             Err(error) => {
                 failed = Err(Failure::new("cannot compute a pressure for the table", error));
@@ -163,7 +163,7 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
 /// What looks wrong with the end of the path.
 pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let failed = |error| Failure::new("cannot compute the pressure of the last state", error);
-    let pressure = solver.pressure().map_err(failed)?;
+    let pressure = solver.fields().map_err(failed)?.pressure;
     let on = (&job.grid(), job.boundary());
     let of_contact = Warning::of_contact(&pressure, &solver.contact_map(), on).map_err(failed)?;
     // With a hardness it is what was asked for.

@@ -22,9 +22,9 @@ pub(super) fn draw(joint: &Joint, directory: &Path) -> Result<Vec<PathBuf>, Fail
     let zones = slip.zones(&path, force).map_err(failed)?;
     // Three fields of the path: the pressures under both loads, and the gap under one of them.
     let full = slip.bed().path_state(state.load).map_err(failed)?;
-    let limit = path.pressure_at(&full).map_err(failed)? * slip.friction().coefficient();
+    let limit = path.fields_at(&full).map_err(failed)?.pressure * slip.friction().coefficient();
     let stick = slip.bed().path_state(state.stick_load).map_err(failed)?;
-    let sticking = path.pressure_at(&stick).map_err(failed)? * slip.friction().coefficient();
+    let sticking = path.fields_at(&stick).map_err(failed)?.pressure * slip.friction().coefficient();
     let traction = &limit - sticking;
     let slipped = slip.slip(&mut path, force).map_err(failed)?;
 

@@ -91,7 +91,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let file = options.record.display();
     let record = LoadingRecord::read_npz(&options.record)
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
-    let bed = Bed::of(&record)
+    let bed = Bed::of_record(&record)
         .map_err(|error| Failure::new(format!("cannot shear the path of {file}"), error))?;
     let joint = Joint::new(&bed, &record, options)?;
     let sheared =

@@ -2,8 +2,7 @@
 
 use asperity::record::LoadingRecord;
 use asperity::stress::{FirstYield, Subsurface, Survey};
-use asperity::updater::ConjugateGradient;
-use asperity::{LoadingSolver, LoadingState};
+use asperity::{LoadingPath, LoadingState};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
@@ -14,7 +13,7 @@ use super::progress::Progress;
 /// A state of the record.
 pub(super) struct Moment<'a> {
     pub(super) record: &'a LoadingRecord,
-    path: LoadingSolver<ConjugateGradient>,
+    path: LoadingPath,
     pub(super) state: LoadingState,
     pub(super) pressure: DMatrix<f64>,
     /// Coefficient of friction, and direction \[°\].
@@ -53,7 +52,7 @@ impl<'a> Moment<'a> {
             })?,
         };
         let mut path = record.replay().map_err(failed)?;
-        let pressure = path.pressure_at(&state).map_err(failed)?;
+        let pressure = path.fields_at(&state).map_err(failed)?.pressure;
         let friction = (options.friction, options.angle);
         Ok(Self { record, path, state, pressure, friction })
     }

@@ -22,7 +22,7 @@ proptest! {
             .ok_or_else(|| TestCaseError::fail("no reading"))?;
         let (surface, kernel) = (case.surface().map_err(failed)?, case.kernel().map_err(failed)?);
         let solver = FixedLoadSolver::builder(&surface, &kernel).tolerance(tolerance).build();
-        let found = solver.and_then(|mut solver| solver.solve(load)).map_err(failed)?.state;
+        let found = solver.and_then(|mut solver| solver.solve(load)).map_err(failed)?.contact;
         // Errors of the tolerance, times a condition of 10³.
         let allowed = 1e3 * tolerance;
         let length = expected.contact.approach + history.states().first().map_or(0.0, |s| s.contact.mean_gap);
@@ -76,8 +76,8 @@ proptest! {
             // Approaches of mean planes differ by less than they are, near full contact by far less.
             let allowed = EXACT * state.contact.load * (state.contact.approach + state.contact.mean_gap);
             close("work", state.contact.energy, work, allowed)?;
-            let pressure = path.pressure().map_err(failed)?;
-            let displacement = path.displacement().map_err(failed)?;
+            let pressure = path.fields().map_err(failed)?.pressure;
+            let displacement = path.fields().map_err(failed)?.displacement;
             let energy = 0.5 * cell * pressure.dot(&displacement);
             close("half of pressures times displacements", state.contact.energy, energy, allowed)?;
             last = Some(state);

@@ -2,7 +2,8 @@
 
 use asperity::bed::{Bed, Superposition};
 use asperity::creep::{
-    Corners, Course, Creep as OfLoad, CreepState, Prony as Law, Relaxation, Steps, Unloading,
+    ControlHistory, Creep as OfLoad, CreepState, PiecewiseLinear, Prony as Law, Relaxation, Steps,
+    Unloading,
 };
 use asperity::{Error, LoadingState};
 use numpy::{PyArray1, PyArray2};
@@ -26,7 +27,7 @@ use crate::state::State;
 pub(crate) struct Creep {
     increments: Increments,
     prony: Py<Prony>,
-    course: Course,
+    course: ControlHistory,
 }
 
 /// Let the contact of viscoelastic bodies grow over time: creep under a load, or relaxation at an approach.
@@ -40,7 +41,7 @@ pub(crate) struct Creep {
 /// prony : Prony
 ///     The modulus over the E* of the path: `Prony.shares`, or `Prony.relative_to`.
 /// times : array_like of float
-///     Corners of the history [s], ascending; two at one time are a jump. Behind the last one the value is held.
+///     PiecewiseLinear of the history [s], ascending; two at one time are a jump. Behind the last one the value is held.
 /// load : array_like of float, optional
 ///     Loads at the corners [N].
 /// approach : array_like of float, optional
@@ -71,13 +72,13 @@ fn creep(
 ) -> Fallible<Creep> {
     let increments = Increments::of(path)?;
     let times = Found::of(times, "times", Kind::Real)?.list()?;
-    let corners = |values: &Bound<'_, PyAny>, name| -> Fallible<Corners> {
+    let corners = |values: &Bound<'_, PyAny>, name| -> Fallible<PiecewiseLinear> {
         let values = Found::of(values, name, Kind::Real)?.list_of(times.len())?;
-        Ok(Corners::new(times.iter().copied().zip(values))?)
+        Ok(PiecewiseLinear::new(times.iter().copied().zip(values))?)
     };
     let course = match (load, approach) {
-        (Some(load), None) => Course::Load(corners(load, "load")?),
-        (None, Some(approach)) => Course::Approach(corners(approach, "approach")?),
+        (Some(load), None) => ControlHistory::Load(corners(load, "load")?),
+        (None, Some(approach)) => ControlHistory::Approach(corners(approach, "approach")?),
         _ => return Err(Failure::arguments("give one of load and approach")),
     };
     let creep = Creep { increments, prony, course };
@@ -92,10 +93,12 @@ enum Grown<'a> {
 }
 
 impl<'a> Grown<'a> {
-    fn on(bed: &'a Bed<'a>, prony: &Law, course: &Course) -> Result<Self, Error> {
+    fn on(bed: &'a Bed<'a>, prony: &Law, course: &ControlHistory) -> Result<Self, Error> {
         Ok(match course {
-            Course::Load(load) => Self::Load(OfLoad::new(bed, prony, load)?),
-            Course::Approach(approach) => Self::Approach(Relaxation::new(bed, prony, approach)?),
+            ControlHistory::Load(load) => Self::Load(OfLoad::new(bed, prony, load)?),
+            ControlHistory::Approach(approach) => {
+                Self::Approach(Relaxation::new(bed, prony, approach)?)
+            }
         })
     }
 
@@ -141,7 +144,7 @@ impl Creep {
         py: Python<'_>,
         ask: impl FnOnce(&Unloading) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
-        let Course::Load(load) = &self.course else {
+        let ControlHistory::Load(load) = &self.course else {
             return Err(Failure::arguments(
                 "a single unloading is solved under a load: `follow` steps through approaches",
             ));
@@ -162,9 +165,7 @@ impl Creep {
         py: Python<'py>,
         superposition: Superposition,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        let field = self
-            .increments
-            .field(py, |engine, bed| engine.superposed_pressure(&superposition, bed))?;
+        let field = self.increments.field(py, |engine, bed| superposition.pressure(bed, engine))?;
         rows(py, field)
     }
 }
@@ -270,14 +271,15 @@ impl Creep {
     /// ndarray of float, [row, column]
     fn gap<'py>(&self, py: Python<'py>, time: f64) -> Fallible<Bound<'py, PyArray2<f64>>> {
         let field = match &self.course {
-            Course::Load(_) => {
+            ControlHistory::Load(_) => {
                 let state = self.grown(py, |grown| grown.path_state(time))?;
-                self.increments.field(py, |engine, _| engine.gap_at(&state))?
+                self.increments
+                    .field(py, |engine, _| engine.fields_at(&state).map(|fields| fields.gap))?
             }
-            Course::Approach(approach) => {
+            ControlHistory::Approach(approach) => {
                 let prony = self.law();
                 self.increments.field(py, |engine, bed| {
-                    engine.relaxed_gap(&Relaxation::new(bed, prony, approach)?, time)
+                    Relaxation::new(bed, prony, approach)?.gap(time, engine)
                 })?
             }
         };
@@ -359,7 +361,7 @@ impl Creep {
     /// Parameters
     /// ----------
     /// times : array_like of float
-    ///     Ends of the steps [s], ascending, as of `step_times`. Corners of the history are steps of their own besides.
+    ///     Ends of the steps [s], ascending, as of `step_times`. PiecewiseLinear of the history are steps of their own besides.
     ///
     /// Returns
     /// -------
@@ -377,8 +379,8 @@ impl Creep {
 
     fn __repr__(&self) -> String {
         let (of, corners) = match &self.course {
-            Course::Load(corners) => ("load", corners),
-            Course::Approach(corners) => ("approach", corners),
+            ControlHistory::Load(corners) => ("load", corners),
+            ControlHistory::Approach(corners) => ("approach", corners),
         };
         format!(
             "<Creep: {of} over {} corners, until {:e} s>",

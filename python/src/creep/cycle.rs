@@ -121,7 +121,7 @@ fn of<'py>(py: Python<'py>, cycle: &Cycle) -> Fallible<Bound<'py, PyAny>> {
         mean_load: cycle.mean_load,
         amplitude: cycle.amplitude,
         approach_amplitude: cycle.approach_amplitude,
-        dissipated: cycle.dissipated,
+        dissipation: cycle.dissipation,
         stiffness: cycle.stiffness,
         loss_factor: cycle.loss_factor,
         approach: column(py, approach),

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use asperity::Error;
 use asperity::bed::Bed;
-use asperity::creep::{Course, CreepState, Prony, ViscoelasticBed};
+use asperity::creep::{ControlHistory, CreepState, Prony, ViscoelasticBed};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -21,7 +21,7 @@ use crate::increments::Increments;
 pub(crate) struct CreepSteps {
     increments: Increments,
     prony: Prony,
-    course: Course,
+    course: ControlHistory,
     times: Vec<f64>,
     states: Vec<CreepState>,
     halvings: usize,
@@ -32,7 +32,7 @@ impl CreepSteps {
         py: Python<'_>,
         increments: &Increments,
         prony: &Prony,
-        course: &Course,
+        course: &ControlHistory,
         times: Vec<f64>,
     ) -> Fallible<Self> {
         let given = (Arc::clone(&increments.history), prony.clone(), course.clone(), times.clone());
@@ -97,9 +97,9 @@ impl CreepSteps {
     /// ndarray of float, [row, column]
     #[pyo3(signature = (pieces=40))]
     fn pressure<'py>(&self, py: Python<'py>, pieces: usize) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        let field = self.increments.field(py, |engine, bed| {
-            engine.superposed_pressure(&self.last(bed)?.pressure(pieces)?, bed)
-        })?;
+        let field = self
+            .increments
+            .field(py, |engine, bed| self.last(bed)?.pressure(pieces)?.pressure(bed, engine))?;
         rows(py, field)
     }
 
@@ -115,9 +115,7 @@ impl CreepSteps {
     /// ndarray of float, [row, column]
     #[pyo3(signature = (pieces=40))]
     fn gap<'py>(&self, py: Python<'py>, pieces: usize) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        let field = self
-            .increments
-            .field(py, |engine, bed| engine.stepped_gap(&self.last(bed)?, pieces))?;
+        let field = self.increments.field(py, |engine, bed| self.last(bed)?.gap(pieces, engine))?;
         rows(py, field)
     }
 

@@ -125,11 +125,11 @@ fn solve(
         target => solver.solve_target(target),
     })??;
     let boundary = half_space.surroundings();
-    let setting = Setting { grid, boundary, has_hardness: solved.plastic.is_some() };
+    let setting = Setting { grid, boundary, has_hardness: solved.contact.plastic.is_some() };
     if check {
-        let e_star = half_space.modulus().filter(|_| solved.plastic.is_none());
+        let e_star = half_space.modulus().filter(|_| solved.contact.plastic.is_none());
         let on = (&grid, boundary);
-        warn_all(py, of_contact(&solved.pressure, &solved.contact_map, on, e_star)?)?;
+        warn_all(py, of_contact(&solved.fields.pressure, &solved.fields.contact_map, on, e_star)?)?;
     }
     Ok(Solution::new(solved, setting))
 }

@@ -1,7 +1,8 @@
 //! The contact under one load.
 
 use asperity::contact::ContactState;
-use asperity::fixed_load::{FixedLoadSolution, Plastic};
+use asperity::contact::PlasticState;
+use asperity::fixed_load::FixedLoadSolution;
 use asperity::nalgebra::{DMatrix, Scalar};
 use asperity::patches::{ContactEdge, constriction};
 use numpy::{Element, PyArray2};
@@ -33,11 +34,11 @@ impl Solution {
     }
 
     fn state(&self) -> &ContactState {
-        &self.solution.state
+        &self.solution.contact
     }
 
-    fn plastic(&self, get: impl Fn(&Plastic) -> f64) -> f64 {
-        self.solution.plastic.as_ref().map_or(0.0, get)
+    fn plastic(&self, get: impl Fn(&PlasticState) -> f64) -> f64 {
+        self.solution.contact.plastic.as_ref().map_or(0.0, get)
     }
 }
 
@@ -66,7 +67,7 @@ impl Solution {
     /// Greatest pressure [Pa].
     #[getter]
     fn max_pressure(&self) -> f64 {
-        self.solution.max_pressure()
+        self.solution.fields.max_pressure()
     }
 
     /// Approach [m] from first touch; of the mean planes on a periodic half-space.
@@ -103,7 +104,7 @@ impl Solution {
     #[getter]
     fn corrected_area(&self) -> Fallible<f64> {
         let Setting { grid, boundary, .. } = self.setting;
-        Ok(ContactEdge::of(&self.solution.contact_map, grid, boundary)?.corrected_area())
+        Ok(ContactEdge::of(&self.solution.fields.contact_map, grid, boundary)?.corrected_area())
     }
 
     /// Contact stiffness dW/d(approach) [N/m]; NaN on a periodic half-space, and if it was not asked for.
@@ -127,25 +128,25 @@ impl Solution {
     /// Pressure [Pa], zero out of contact.
     #[getter]
     fn pressure<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        copy(py, &self.solution.pressure)
+        copy(py, &self.solution.fields.pressure)
     }
 
     /// Gap [m]: zero in contact, to within the tolerance.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        copy(py, &self.solution.gap)
+        copy(py, &self.solution.fields.gap)
     }
 
     /// Displacement of the half-space [m], positive into it; about its mean on a periodic half-space.
     #[getter]
     fn displacement<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        copy(py, &self.solution.displacement)
+        copy(py, &self.solution.fields.displacement)
     }
 
     /// Which nodes are in contact.
     #[getter]
     fn contact_map<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray2<bool>>> {
-        copy(py, &self.solution.contact_map)
+        copy(py, &self.solution.fields.contact_map)
     }
 
     /// Pressure per unit of load [1/m²], on further loading; None if stiffnesses were not asked for.
@@ -158,27 +159,27 @@ impl Solution {
     /// Which nodes have yielded; None without a hardness.
     #[getter]
     fn yielded_map<'py>(&self, py: Python<'py>) -> Fallible<Option<Bound<'py, PyArray2<bool>>>> {
-        let plastic = self.solution.plastic.as_ref();
-        plastic.map(|plastic| copy(py, &plastic.yielded_map)).transpose()
+        let FixedLoadSolution { contact, fields, .. } = &self.solution;
+        contact.plastic.map(|_| copy(py, &fields.yielded_map)).transpose()
     }
 
     /// Plastic depth [m]: by how much yielded nodes would overlap; None without a hardness.
     #[getter]
     fn plastic_depth<'py>(&self, py: Python<'py>) -> Fallible<Option<Bound<'py, PyArray2<f64>>>> {
-        let plastic = self.solution.plastic.as_ref();
-        plastic.map(|plastic| copy(py, &plastic.depth)).transpose()
+        let FixedLoadSolution { contact, fields, .. } = &self.solution;
+        contact.plastic.map(|_| copy(py, &fields.plastic_depth)).transpose()
     }
 
     /// Number of nodes that have yielded.
     #[getter]
     fn yielded_nodes(&self) -> usize {
-        self.solution.plastic.as_ref().map_or(0, Plastic::yielded_nodes)
+        self.solution.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes)
     }
 
     /// Their area over the nominal area.
     #[getter]
     fn yielded_area_fraction(&self) -> f64 {
-        self.plastic(|plastic| plastic.area / self.setting.grid.nominal_area())
+        self.plastic(|plastic| plastic.yielded_area_fraction)
     }
 
     /// Volume of the plastic depth [m³].
@@ -239,7 +240,8 @@ impl Solution {
     /// PatchMap
     #[pyo3(signature = (*, connectivity=8))]
     fn patches(&self, py: Python<'_>, connectivity: usize) -> Fallible<PatchMap> {
-        let (contact, pressure) = (&self.solution.contact_map, &self.solution.pressure);
+        let (contact, pressure) =
+            (&self.solution.fields.contact_map, &self.solution.fields.pressure);
         label(py, contact, Some(pressure), &self.setting, choice::connectivity(connectivity)?)
     }
 
@@ -260,7 +262,7 @@ impl Solution {
     ) -> Fallible<Option<Bound<'py, PyAny>>> {
         let axis = choice::axis(axis)?;
         let Setting { grid, boundary, .. } = self.setting;
-        let (gap, contact) = (&self.solution.gap, &self.solution.contact_map);
+        let (gap, contact) = (&self.solution.fields.gap, &self.solution.fields.contact_map);
         let found = detached(py, || constriction(gap, contact, (&grid, boundary), axis))??;
         found
             .map(|found| {

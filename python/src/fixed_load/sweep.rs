@@ -98,11 +98,16 @@ impl LoadSweep {
         match solved? {
             Some(Ok(Ok(solution))) => {
                 if self.check {
-                    let e_star = self.e_star.filter(|_| solution.plastic.is_none());
+                    let e_star = self.e_star.filter(|_| solution.contact.plastic.is_none());
                     let on = (&self.setting.grid, self.setting.boundary);
                     warn_all(
                         py,
-                        of_contact(&solution.pressure, &solution.contact_map, on, e_star)?,
+                        of_contact(
+                            &solution.fields.pressure,
+                            &solution.fields.contact_map,
+                            on,
+                            e_star,
+                        )?,
                     )?;
                 }
                 Ok(Some(Solution::new(solution, self.setting)))

@@ -8,10 +8,10 @@ use asperity::record::LoadingRecord;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{ContactEvent, ContactTarget, Error, InfluenceKernel, LoadingSolver, LoadingState};
 
-use super::engine::Engine;
+use super::Engine;
 
 /// An updater of any kind.
-pub(super) type AnyUpdater = Box<dyn LinearUpdater + Send + Sync>;
+pub(super) type AnyUpdater = Box<dyn LinearUpdater>;
 
 /// The solver of the linear systems.
 #[derive(Clone, Copy)]
@@ -47,9 +47,9 @@ pub(super) struct Resume {
 /// Where the states come from.
 enum Source {
     /// A path that goes on.
-    Live(Box<dyn Engine>),
+    Live(Box<Engine>),
     /// A record: its path as it was, for fields, and what it takes to go on.
-    Record { record: Box<LoadingRecord>, replay: Box<dyn Engine>, resume: Resume },
+    Record { record: Box<LoadingRecord>, replay: Box<Engine>, resume: Resume },
 }
 
 /// A path with its states.
@@ -61,7 +61,7 @@ pub(super) struct Inner {
 }
 
 impl Inner {
-    pub(super) fn live(engine: impl Engine + 'static, bodies: &[(f64, f64)]) -> Self {
+    pub(super) fn live(engine: Engine, bodies: &[(f64, f64)]) -> Self {
         let layering = engine.problem().table().origin().layering();
         let history = Arc::new(loading::History::default().on(layering));
         Self { source: Source::Live(Box::new(engine)), history, bodies: bodies.to_vec() }
@@ -76,17 +76,15 @@ impl Inner {
     }
 
     /// What computes fields.
-    pub(super) fn engine(&self) -> &dyn Engine {
+    pub(super) fn engine(&self) -> &Engine {
         match &self.source {
-            Source::Live(engine) => &**engine,
-            Source::Record { replay, .. } => &**replay,
+            Source::Live(path) | Source::Record { replay: path, .. } => path,
         }
     }
 
-    pub(super) fn engine_mut(&mut self) -> &mut dyn Engine {
+    pub(super) fn engine_mut(&mut self) -> &mut Engine {
         match &mut self.source {
-            Source::Live(engine) => &mut **engine,
-            Source::Record { replay, .. } => &mut **replay,
+            Source::Live(path) | Source::Record { replay: path, .. } => path,
         }
     }
 
@@ -118,7 +116,7 @@ impl Inner {
     }
 
     /// A path that goes on, of a record made again: the factor is built anew.
-    fn revive(&mut self) -> Result<&mut dyn Engine, Error> {
+    fn revive(&mut self) -> Result<&mut Engine, Error> {
         if let Source::Record { record, resume, .. } = &self.source {
             let hardness = record.hardness_map()?;
             let mut builder = LoadingSolver::builder(record.heights(), &*resume.kernel)
@@ -133,7 +131,7 @@ impl Inner {
             if let Some(bytes) = resume.memory_budget {
                 builder = builder.memory_budget(bytes);
             }
-            self.source = Source::Live(Box::new(builder.resume(record.history())?));
+            self.source = Source::Live(Box::new(builder.resume(record.history())?.into_path()));
         }
         Ok(self.engine_mut())
     }
@@ -147,7 +145,7 @@ impl Inner {
         if self.end().is_some() {
             return Ok(None);
         }
-        let Some(state) = self.revive()?.advance().transpose()? else {
+        let Some(state) = self.revive()?.next().transpose()? else {
             return Ok(None);
         };
         self.keep(state);
@@ -181,7 +179,7 @@ impl Inner {
     pub(super) fn record(&self) -> Result<LoadingRecord, Error> {
         match &self.source {
             Source::Live(engine) => {
-                engine.record((*self.history).clone())?.with_bodies(&self.bodies)
+                LoadingRecord::new(engine, (*self.history).clone())?.with_bodies(&self.bodies)
             }
             Source::Record { record, .. } => Ok((**record).clone()),
         }

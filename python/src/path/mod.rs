@@ -1,6 +1,5 @@
 //! The loading path.
 
-mod engine;
 mod inner;
 pub(crate) mod setup;
 mod unloading;
@@ -20,7 +19,8 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
-pub(crate) use self::engine::{Engine, Sheared};
+/// The path of the engine.
+pub(crate) type Engine = asperity::LoadingPath;
 use self::inner::Inner;
 use crate::arrays::{column, rows, shape};
 use crate::choice;
@@ -59,7 +59,7 @@ impl LoadingPath {
         let setting = Setting {
             grid: engine.problem().grid(),
             boundary: engine.problem().boundary(),
-            has_hardness: engine.has_hardness(),
+            has_hardness: engine.hardness_map().is_some(),
         };
         Self { inner: Mutex::new(inner), setting, e_star }
     }
@@ -111,7 +111,7 @@ impl LoadingPath {
     pub(crate) fn computed<T: Send>(
         &self,
         py: Python<'_>,
-        compute: impl FnOnce(&mut dyn Engine) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
         let mut inner = self.lock(py);
         let engine = inner.engine_mut();
@@ -122,7 +122,7 @@ impl LoadingPath {
     pub(crate) fn with_record<T: Send>(
         &self,
         py: Python<'_>,
-        compute: impl FnOnce(&mut dyn Engine, &LoadingRecord) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &LoadingRecord) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
         let mut inner = self.lock(py);
         let record = inner.record()?;
@@ -135,7 +135,7 @@ impl LoadingPath {
         &self,
         py: Python<'_>,
         state: Option<PyRef<'_, State>>,
-        compute: impl FnOnce(&mut dyn Engine, &LoadingState) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &LoadingState) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
         let mut inner = self.lock(py);
         let state = Self::state_or_last(&inner, state)?;
@@ -148,7 +148,7 @@ impl LoadingPath {
         &self,
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
-        compute: impl FnOnce(&mut dyn Engine, &LoadingState) -> Result<DMatrix<T>, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &LoadingState) -> Result<DMatrix<T>, Error> + Send,
     ) -> Fallible<Bound<'py, PyArray2<T>>> {
         rows(py, self.at(py, state, compute)?)
     }
@@ -179,8 +179,8 @@ impl LoadingPath {
         let e_star = self.e_star.filter(|_| !has_hardness);
         let engine = inner.engine_mut();
         let warnings = detached(py, move || {
-            let pressure = engine.pressure_at(&state)?;
-            of_contact(&pressure, &engine.contact_map_at(&state)?, (&grid, boundary), e_star)
+            let fields = engine.fields_at(&state)?;
+            of_contact(&fields.pressure, &fields.contact_map, (&grid, boundary), e_star)
         });
         Ok(warnings??)
     }
@@ -383,7 +383,7 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.pressure_at(state))
+        self.field(py, state, |engine, state| engine.fields_at(state).map(|fields| fields.pressure))
     }
 
     /// Gap [m] at a state: zero in contact, to rounding.
@@ -402,7 +402,7 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.gap_at(state))
+        self.field(py, state, |engine, state| engine.fields_at(state).map(|fields| fields.gap))
     }
 
     /// Displacement of the half-space [m] at a state, positive into it; about its mean on a periodic half-space.
@@ -421,7 +421,9 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.displacement_at(state))
+        self.field(py, state, |engine, state| {
+            engine.fields_at(state).map(|fields| fields.displacement)
+        })
     }
 
     /// Which nodes are in contact at a state.
@@ -478,7 +480,9 @@ impl LoadingPath {
         py: Python<'py>,
         state: Option<PyRef<'_, State>>,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field(py, state, |engine, state| engine.plastic_depth_at(state))
+        self.field(py, state, |engine, state| {
+            engine.fields_at(state).map(|fields| fields.plastic_depth)
+        })
     }
 
     /// The surface with the plastic depth of a state taken off: that of elastic unloading from there.
@@ -554,8 +558,8 @@ impl LoadingPath {
         let axis = choice::axis(axis)?;
         let Setting { grid, boundary, .. } = self.setting;
         let found = self.at(py, state, |engine, state| {
-            let (gap, contact) = (engine.gap_at(state)?, engine.contact_map_at(state)?);
-            constriction(&gap, &contact, (&grid, boundary), axis)
+            let fields = engine.fields_at(state)?;
+            constriction(&fields.gap, &fields.contact_map, (&grid, boundary), axis)
         })?;
         found
             .map(|found| {
@@ -602,11 +606,10 @@ impl LoadingPath {
             let record = inner.record()?;
             let mut written = Vec::new();
             if let (true, Some(state)) = (fields, inner.present()) {
-                let engine = inner.engine_mut();
-                written.push(("pressure", engine.pressure_at(&state)?));
-                written.push(("gap", engine.gap_at(&state)?));
+                let fields = inner.engine_mut().fields_at(&state)?;
+                written.extend([("pressure", fields.pressure), ("gap", fields.gap)]);
                 if has_hardness {
-                    written.push(("plastic_depth", engine.plastic_depth_at(&state)?));
+                    written.push(("plastic_depth", fields.plastic_depth));
                 }
             }
             let written: Vec<_> = written.iter().map(|(name, field)| (*name, field)).collect();

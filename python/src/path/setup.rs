@@ -115,7 +115,7 @@ fn load_path(
         }
         builder.build()
     })??;
-    let inner = Inner::live(solver, half_space.elastic_bodies());
+    let inner = Inner::live(solver.into_path(), half_space.elastic_bodies());
     Ok(LoadingPath::new(inner, half_space.modulus()))
 }
 

@@ -47,7 +47,7 @@ pub(super) fn unload(path: &Bound<'_, LoadingPath>) -> Fallible<Unloading> {
     let states = if load > 0.0 {
         let solver =
             detached(py, || LoadingSolver::builder(&map, &kernel).max_load(load).build())??;
-        let unloading = LoadingPath::new(super::Inner::live(solver, &[]), this.e_star);
+        let unloading = LoadingPath::new(super::Inner::live(solver.into_path(), &[]), this.e_star);
         unloading.run(py, None, false)?;
         let states = unloading.history_now(py).history;
         Arc::new(States::clone(&states).up_to_load(load))

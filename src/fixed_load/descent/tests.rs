@@ -22,12 +22,12 @@ fn spread_out() -> Result<(Level, Prescribed), Error> {
     let mut solver = FixedLoadSolver::new(&surface, &Boussinesq::new(grid, 1.0)?)?;
     let solution = solver.solve(0.03)?;
     let mut level = solver.into_finest();
-    let total = sum(solution.pressure.as_slice());
-    let mean = total / solution.state.contact_nodes as f64;
-    level.choose_contact(|node, _, _| solution.contact_map[node])?;
+    let total = sum(solution.fields.pressure.as_slice());
+    let mean = total / solution.contact.contact_nodes as f64;
+    level.choose_contact(|node, _, _| solution.fields.contact_map[node])?;
     for (node, pressure) in level.iterate.pressure.iter_mut().enumerate() {
-        let even = if solution.contact_map[node] { mean } else { 0.0 };
-        *pressure = 0.5 * (solution.pressure[node] + even);
+        let even = if solution.fields.contact_map[node] { mean } else { 0.0 };
+        *pressure = 0.5 * (solution.fields.pressure[node] + even);
     }
     level.refresh()?;
     Ok((level, Prescribed::Sum(total)))

@@ -1,11 +1,11 @@
 //! What a pressure does below the surface of layers.
 
 use super::body::{Base, LayeredBody};
+use super::cell::{self, Smoothness};
 use super::compliance::{Block, Compliance, Material};
 use super::free::first_variation;
 use super::radial::{Radial, Spectrum};
 use crate::Grid;
-use crate::kernel::gauss::{EIGHT, FOUR, FOURTEEN, SIX, TEN, TWENTY};
 use crate::parallel::for_each_chunk;
 
 /// Stress components in the order of Voigt: xx, yy, zz, yz, xz, xy.
@@ -206,41 +206,18 @@ impl Field {
     }
 
     /// Adds the integral over a cell, by rules that leave 10⁻¹⁶, as of displacements.
-    fn add_cell(&self, sum: &mut Stresses, (x, y): (f64, f64), (dx, dy): (f64, f64)) {
-        let beyond = |at: f64, side: f64| (at.abs() - 0.5 * side).max(0.0);
-        let (near_x, near_y) = (beyond(x, dx), beyond(y, dy));
-        let nearest = (near_x * near_x + near_y * near_y + self.scale * self.scale).sqrt();
-        let distance = nearest / (0.5 * dx.max(dy));
-        let rule: &[(f64, f64)] = if distance < 1.06 {
-            if dx >= dy {
-                self.add_cell(sum, (x - 0.25 * dx, y), (0.5 * dx, dy));
-                self.add_cell(sum, (x + 0.25 * dx, y), (0.5 * dx, dy));
-            } else {
-                self.add_cell(sum, (x, y - 0.25 * dy), (dx, 0.5 * dy));
-                self.add_cell(sum, (x, y + 0.25 * dy), (dx, 0.5 * dy));
+    fn add_cell(&self, sum: &mut Stresses, center: (f64, f64), sides: (f64, f64)) {
+        let smoothness = Smoothness { depth: self.scale, most: f64::INFINITY };
+        let Some(rule) = smoothness.rule(center, sides) else {
+            for (center, sides) in cell::halves(center, sides) {
+                self.add_cell(sum, center, sides);
             }
             return;
-        } else if distance < 1.74 {
-            &TWENTY
-        } else if distance < 3.1 {
-            &FOURTEEN
-        } else if distance < 5.0 {
-            &TEN
-        } else if distance < 10.7 {
-            &EIGHT
-        } else if distance < 50.0 {
-            &SIX
-        } else {
-            &FOUR
         };
-        const SIGNS: [(f64, f64); 4] = [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
         for (node_y, weight_y) in rule {
             for (node_x, weight_x) in rule {
-                let weight = 0.25 * dx * dy * weight_x * weight_y;
-                let places = SIGNS.map(|(sign_x, sign_y)| {
-                    (x + 0.5 * sign_x * node_x * dx, y + 0.5 * sign_y * node_y * dy)
-                });
-                self.add_points(sum, weight, places);
+                let weight = 0.25 * sides.0 * sides.1 * weight_x * weight_y;
+                self.add_points(sum, weight, cell::places(center, sides, (*node_x, *node_y)));
             }
         }
     }

@@ -11,54 +11,71 @@ pub(super) struct Smoothness {
     pub(super) most: f64,
 }
 
+impl Smoothness {
+    /// The rule for the cell of `sides` about `center`; `None` if the cell has to be divided.
+    ///
+    /// Along a line through the cell that passes the origin at a distance b, the nearest singularities lie at √(b² + depth²) to either
+    /// side of the line. With d, the least of these distances in the cell, and half the long side a of the cell, an n-point rule converges
+    /// as ϱ⁻²ⁿ with ϱ = d/a + √(d²/a² + 1). The rules are those with ϱ⁻²ⁿ ≤ 10⁻¹⁶; where there is none, the cell is divided.
+    pub(super) fn rule(
+        self,
+        (x, y): (f64, f64),
+        (dx, dy): (f64, f64),
+    ) -> Option<&'static [(f64, f64)]> {
+        let beyond = |at: f64, side: f64| (at.abs() - 0.5 * side).max(0.0);
+        let (near_x, near_y) = (beyond(x, dx), beyond(y, dy));
+        let Self { depth, most } = self;
+        let nearest = (near_x * near_x + near_y * near_y + depth * depth).sqrt().min(most);
+        match nearest / (0.5 * dx.max(dy)) {
+            distance if distance < 1.06 => None,
+            distance if distance < 1.74 => Some(&TWENTY),
+            distance if distance < 3.1 => Some(&FOURTEEN),
+            distance if distance < 5.0 => Some(&TEN),
+            distance if distance < 10.7 => Some(&EIGHT),
+            distance if distance < 50.0 => Some(&SIX),
+            _ => Some(&FOUR),
+        }
+    }
+}
+
+/// Centers and sides of the halves of a cell.
+pub(super) fn halves((x, y): (f64, f64), (dx, dy): (f64, f64)) -> [((f64, f64), (f64, f64)); 2] {
+    if dx >= dy {
+        [-0.25, 0.25].map(|part| ((x + part * dx, y), (0.5 * dx, dy)))
+    } else {
+        [-0.25, 0.25].map(|part| ((x, y + part * dy), (dx, 0.5 * dy)))
+    }
+}
+
+/// The four places of a cell that belong to a node of a rule for each direction.
+pub(super) fn places(
+    (x, y): (f64, f64),
+    (dx, dy): (f64, f64),
+    (node_x, node_y): (f64, f64),
+) -> [(f64, f64); 4] {
+    const SIGNS: [(f64, f64); 4] = [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
+    SIGNS.map(|(sign_x, sign_y)| (x + 0.5 * sign_x * node_x * dx, y + 0.5 * sign_y * node_y * dy))
+}
+
 /// ∫ f(r) dA over the cell of `sides` about `center`, with f at four distances at a time.
-///
-/// Along a line through the cell that passes the origin at a distance b, the nearest singularities lie at √(b² + depth²) to either
-/// side of the line. With d, the least of these distances in the cell, and half the long side a of the cell, an n-point rule converges
-/// as ϱ⁻²ⁿ with ϱ = d/a + √(d²/a² + 1). The rules are those with ϱ⁻²ⁿ ≤ 10⁻¹⁶; where there is none, the cell is divided.
 pub(super) fn integral(
     f: &impl Fn([f64; 4]) -> [f64; 4],
     smoothness: Smoothness,
     center: (f64, f64),
     sides: (f64, f64),
 ) -> f64 {
-    let ((x, y), (dx, dy)) = (center, sides);
-    let beyond = |at: f64, side: f64| (at.abs() - 0.5 * side).max(0.0);
-    let (near_x, near_y) = (beyond(x, dx), beyond(y, dy));
-    let Smoothness { depth, most } = smoothness;
-    let nearest = (near_x * near_x + near_y * near_y + depth * depth).sqrt().min(most);
-    let distance = nearest / (0.5 * dx.max(dy));
-    let rule: &[(f64, f64)] = if distance < 1.06 {
-        let half = |x, y, sides| integral(f, smoothness, (x, y), sides);
-        return if dx >= dy {
-            let sides = (0.5 * dx, dy);
-            half(x - 0.25 * dx, y, sides) + half(x + 0.25 * dx, y, sides)
-        } else {
-            let sides = (dx, 0.5 * dy);
-            half(x, y - 0.25 * dy, sides) + half(x, y + 0.25 * dy, sides)
-        };
-    } else if distance < 1.74 {
-        &TWENTY
-    } else if distance < 3.1 {
-        &FOURTEEN
-    } else if distance < 5.0 {
-        &TEN
-    } else if distance < 10.7 {
-        &EIGHT
-    } else if distance < 50.0 {
-        &SIX
-    } else {
-        &FOUR
+    let Some(rule) = smoothness.rule(center, sides) else {
+        return halves(center, sides)
+            .map(|(center, sides)| integral(f, smoothness, center, sides))
+            .iter()
+            .sum();
     };
+    let ((x, y), (dx, dy)) = (center, sides);
     let mut sum = 0.0;
     for (node_y, weight_y) in rule {
         for (node_x, weight_x) in rule {
-            let signs = [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
-            let corners = f(signs.map(|(sign_x, sign_y)| {
-                let x = x + 0.5 * sign_x * node_x * dx;
-                let y = y + 0.5 * sign_y * node_y * dy;
-                (x * x + y * y).sqrt()
-            }));
+            let places = places((x, y), (dx, dy), (*node_x, *node_y));
+            let corners = f(places.map(|(x, y)| (x * x + y * y).sqrt()));
             sum += weight_x * weight_y * corners.iter().sum::<f64>();
         }
     }

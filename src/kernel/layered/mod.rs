@@ -72,7 +72,7 @@ use crate::{Error, Grid};
 /// let body = LayeredBody::new(&[rubber], Base::Rigid)?;
 /// let kernel = Layered::free(Grid::square(64, 8e-3)?, body)?;
 /// let solution = FixedLoadSolver::new(&Paraboloid::new(20e-3)?, &kernel)?.solve(1.0)?;
-/// assert!(solution.state.approach < 0.2e-3);
+/// assert!(solution.contact.approach < 0.2e-3);
 /// # Ok::<(), asperity::Error>(())
 /// ```
 #[derive(Debug, Clone)]

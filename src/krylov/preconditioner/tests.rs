@@ -68,7 +68,7 @@ fn takes_fewer_steps_than_the_sparse_inverse() -> Result<(), Error> {
     let solution = solver.solve(0.03)?;
     let table = KernelTable::new(&kernel)?;
     let mut contact = NodeSet::new(grid.nodes());
-    contact.assign(|node| solution.contact_map[node]);
+    contact.assign(|node| solution.fields.contact_map[node]);
     assert!(contact.len() > grid.nodes() / 3, "{} nodes", contact.len());
     let mut preconditioner = Preconditioner::new(&table);
     preconditioner.update(&contact);

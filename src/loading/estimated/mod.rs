@@ -10,11 +10,9 @@ mod plateau;
 pub(super) mod resumed;
 mod states;
 #[cfg(test)]
+mod test_wrong_matrices;
+#[cfg(test)]
 mod window_tests;
-#[cfg(test)]
-mod wrong_complements;
-#[cfg(test)]
-mod wrong_matrices;
 
 use super::contradiction::{Slack, contradiction};
 use super::gap_field::GapLine;
@@ -207,25 +205,32 @@ impl Estimated {
 
     /// Takes all scalars from the solution at the present approach, and ranks the nodes.
     fn survey(&mut self, run: &mut LoadingRun, tolerances: &WindowTolerances) -> Result<(), Error> {
+        if run.plastic.is_none() {
+            return self.survey_within(run, Slack::ANY);
+        }
+        let approach = run.scalars.approach();
+        let [_, slack] = slacks(run, (&run.problem, &run.contact), tolerances, approach);
+        self.left = slack.excess;
+        self.survey_within(run, slack)
+    }
+
+    /// The same, where the solution may contradict by so much what contact that grows does.
+    fn survey_within(&mut self, run: &mut LoadingRun, slack: Slack) -> Result<(), Error> {
         self.ranked = None;
         self.beyond = f64::INFINITY;
-        let approach = run.scalars.approach();
-        let plastic = run.plastic.clone();
-        if let Some(plastic) = plastic {
-            let [_, slack] = slacks(run, (&run.problem, &run.contact), tolerances, approach);
-            self.left = slack.excess;
-            if plastic.count() > 0 {
+        match run.plastic.clone().filter(|plastic| plastic.count() > 0) {
+            Some(plastic) => {
                 self.rates = ranking::survey(run, &plastic, &mut self.ranking, slack)?;
-                self.ranked = Some((run.contact.revision(), approach));
-                return Ok(());
+            }
+            None => {
+                let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
+                run.scalars.renew_load(problem, contact, field);
+                fill(run, &mut self.ranking, None, GapLine::touches)?;
+                [_, self.beyond] = rank_yields(run, &mut self.ranking);
+                self.rates = run.scalars.rates();
             }
         }
-        let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
-        run.scalars.renew_load(problem, contact, field);
-        fill(run, &mut self.ranking, None, GapLine::touches)?;
-        [_, self.beyond] = rank_yields(run, &mut self.ranking);
-        self.rates = run.scalars.rates();
-        self.ranked = Some((run.contact.revision(), approach));
+        self.ranked = Some((run.contact.revision(), run.scalars.approach()));
         Ok(())
     }
 

@@ -1,17 +1,21 @@
-//! Nodes that touch together, too many to be watched: a flat punch, a plateau.
+//! Events that come together, too many to be watched: a flat punch, a plateau.
 
 use super::choice::Candidates;
-use super::states::{Passed, enqueue_together, pinned};
+use super::states::{Passed, completed, enqueue_together};
 use super::{Estimated, closing, go_to, slacks};
 use crate::Error;
 use crate::loading::contradiction::Slack;
 use crate::loading::run::LoadingRun;
+use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::trial::Trial;
 use crate::loading::tuning::{MOST_TIES, PART, TOLERANCE};
 use crate::loading::walk::Carried;
 use crate::updater::{Behind, Iterations};
+
+/// A node, and whether it touches or yields.
+type NodeEvent = (usize, ContactEvent);
 
 impl Estimated {
     /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices.
@@ -35,144 +39,103 @@ impl Estimated {
         let open = group.iter().map(|&node| self.left / rate_of(node));
         let most_late = open.fold(error, f64::max);
         group.sort_unstable();
-        if run.has_yielded() || group.iter().any(|&node| run.contact.contains(node)) {
-            return self.yield_all(run, iterations, tolerances, (&group, time), [error, most_late]);
-        }
-        self.touch_all(run, iterations, tolerances, (group, time), error)
-    }
-
-    /// Lets nodes that touch at a time join, in their order. Their times may be off by an error.
-    fn touch_all(
-        &mut self,
-        run: &mut LoadingRun,
-        iterations: &mut dyn Iterations,
-        tolerances: &WindowTolerances,
-        (group, time): (Vec<usize>, f64),
-        error: f64,
-    ) -> Result<(), Error> {
-        let mark = run.mark();
-        let approach = mark.scalars.approach() + time;
-        self.last_span = self.last_span.max(time);
-        let entered = self.join_all(run, iterations, tolerances, (&group, approach));
-        let entered = entered.and_then(|increments| {
-            keeps_growing(run, run.contact.len(), tolerances).map(|()| increments)
-        });
-        let increments = match entered {
-            Ok(increments) => increments,
-            Err(error) => {
-                let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
-                return Err(error);
-            }
-        };
-        let mut walked = mark.scalars;
-        walked.advance(approach);
-        let [stiffness, _] = walked.missing(&run.scalars);
-        let error = walked.reported_error(error, walked.load_of(stiffness, error));
-        self.joined.clone_from(&group);
-        for (k, (node, increment)) in group.into_iter().zip(increments).enumerate() {
-            let contact_nodes = mark.count + k + 1;
-            walked.touch(increment, contact_nodes);
-            walked.clamp_mean_gap();
-            let step = run.releases.steps(contact_nodes);
-            let event = (step, ContactEvent::Touch, node);
-            run.enqueue_at(&walked, event, contact_nodes, error)?;
-        }
-        Ok(())
-    }
-
-    /// Lets nodes whose event is at a time touch or yield, in their order. Between them rates change in equal steps. Their times may be off
-    /// by an error, and the first of their events be so much later.
-    fn yield_all(
-        &mut self,
-        run: &mut LoadingRun,
-        iterations: &mut dyn Iterations,
-        tolerances: &WindowTolerances,
-        (group, time): (&[usize], f64),
-        [error, most_late]: [f64; 2],
-    ) -> Result<(), Error> {
         let kind = |node: usize| match run.contact.contains(node) {
             true => ContactEvent::Yield,
             false => ContactEvent::Touch,
         };
-        let events: Vec<(usize, ContactEvent)> =
-            group.iter().map(|&node| (node, kind(node))).collect();
-        let approach = run.scalars.approach() + time;
-        let trial = Trial::of(run, &events)?;
-        // However little is left open by so many nodes: rates must be exact.
-        self.rate_span = f64::INFINITY;
-        go_to(run, iterations, &trial, (approach, self.rate_span))?;
-        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
-        // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
-        let [_, most] =
-            slacks(run, (trial.problem(&run.problem), &trial.contact), tolerances, approach);
-        let late = lateness(run, &trial, (approach, most));
-        let late = if late <= most_late { late } else { 0.0 };
-        let (time, approach, error) = (time + late, approach + late, error.max(late));
-        if late > 0.0 {
-            let here = Behind::on(trial.problem(&run.problem), &trial.contact, approach);
-            run.field.advance(&here, iterations, self.rate_span)?;
+        let events: Vec<NodeEvent> = group.iter().map(|&node| (node, kind(node))).collect();
+
+        let passed = Passed { start: run.scalars, before: Carried::of(run), span: time };
+        let before = run.before();
+        match self.pass_together(run, iterations, tolerances, (&events, time, most_late)) {
+            Ok((rates, late)) => {
+                self.last_span = self.last_span.max(time + late);
+                let joined = run.contact.order().iter().copied();
+                self.joined = joined.filter(|&node| !before.contact.contains(node)).collect();
+                enqueue_together(run, &events, passed, (&rates, error.max(late)))
+            }
+            Err(error) => {
+                run.go_back(before);
+                let _ = iterations.cut(&run.problem, &run.contact);
+                Err(error)
+            }
         }
-        if let Some((node, pressure)) = pulled(run, &trial, tolerances, approach) {
-            iterations.cut(&run.problem, &run.contact)?;
-            return Err(run.not_monotone("pressure", node, pressure));
-        }
-        self.last_span = self.last_span.max(time);
-        let before = Carried::of(run);
-        let passed = Passed { start: run.scalars, before, span: time };
-        let rates = self.rates;
-        self.joined = trial.joined(run);
-        trial.adopt(run);
-        run.scalars.place_at(approach);
-        self.survey(run, tolerances)?;
-        enqueue_together(run, &events, passed, ([rates, self.rates], error))
     }
 
-    /// Lets nodes join at an approach, in windows with a solution behind each. Returns what each adds to stiffness and closing rate: as
-    /// the pivots say, scaled so that they end where the solution is.
-    fn join_all(
+    /// Lets the path follow events that come together after a time, up to `most_late` later: in windows with a solution behind each.
+    /// Returns the rates behind each event, and how much later they are.
+    fn pass_together(
         &mut self,
         run: &mut LoadingRun,
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
-        (group, approach): (&[usize], f64),
-    ) -> Result<Vec<[f64; 2]>, Error> {
-        let mut increments = Vec::with_capacity(group.len());
-        let mut left = group;
-        while !left.is_empty() {
+        (events, time, most_late): (&[NodeEvent], f64, f64),
+    ) -> Result<(Vec<Rates>, f64), Error> {
+        let approach = run.scalars.approach() + time;
+        let mut rates = Vec::with_capacity(events.len());
+        let mut left = events;
+        loop {
             // Where few gaps are open each counts for much of what is left of the closing rate.
-            let open = run.problem.grid().nodes() - run.contact.len();
+            let open = run.problem.grid().nodes() - run.contact_nodes();
             let size = (open / PART).clamp(self.size, MOST_TIES * self.size);
-            let (nodes, others) = left.split_at(size.min(left.len()));
-            left = others;
-            let times = nodes.iter().map(|&node| (0.0, node)).collect();
-            let candidates = Candidates { nodes: times, horizon: 0.0, group: None };
+            let (now, later) = left.split_at(size.min(left.len()));
+            left = later;
+            let nodes = now.iter().map(|&(node, _)| (0.0, node)).collect();
+            let candidates = Candidates { nodes, horizon: 0.0, group: None };
             let mut window = self.propose(run, iterations, candidates, 0.0)?;
-            for (position, &node) in nodes.iter().enumerate() {
+            let positions = now.iter().filter_map(|&(node, _)| window.position(node));
+            for position in positions.collect::<Vec<_>>() {
                 window.happen(position, 0.0).map_err(|bad| run.not_positive_definite(bad))?;
-                run.contact.push(node)?;
             }
+            let trial = Trial::of(run, now)?;
             // The approach goes on from the last of them only. However little is left open by so many nodes: rates must be exact there.
-            self.rate_span = if left.is_empty() { f64::INFINITY } else { 0.0 };
-            let before = run.scalars;
-            run.advance_field(iterations, approach, self.rate_span)?;
-            run.scalars.place_at(approach);
-            self.survey(run, tolerances)?;
-            increments.extend(pinned(&window, before.missing(&run.scalars)));
+            let is_last = left.is_empty();
+            self.rate_span = if is_last { f64::INFINITY } else { 0.0 };
+            go_to(run, iterations, &trial, (approach, self.rate_span))?;
+            let late = if is_last {
+                self.follow_late(run, iterations, tolerances, (&trial, approach, most_late))?
+            } else {
+                0.0
+            };
+            trial.adopt(run);
+            run.scalars.place_at(approach + late);
+            let before = self.rates;
+            if is_last {
+                self.survey(run, tolerances)?;
+            } else {
+                // Not all that happens there has happened.
+                self.survey_within(run, Slack::ANY)?;
+            }
+            rates.extend(completed(&before, &window.rates(before), &self.rates));
+            if is_last {
+                return Ok((rates, late));
+            }
         }
-        Ok(increments)
     }
-}
 
-/// `Ok` if none of the first `count` nodes in contact is pulled at the present solution: where contact grows they keep what they carry.
-fn keeps_growing(
-    run: &LoadingRun,
-    count: usize,
-    tolerances: &WindowTolerances,
-) -> Result<(), Error> {
-    let approach = run.scalars.approach();
-    match run.negative_pressure(count, (approach, tolerances.overlap(approach))) {
-        Some((node, value)) => Err(run.not_monotone("pressure", node, value)),
-        None => Ok(()),
+    /// Goes on to where nothing contradicts events at an approach, up to `most_late`. Returns how far that is.
+    fn follow_late(
+        &self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (trial, approach, most_late): (&Trial, f64, f64),
+    ) -> Result<f64, Error> {
+        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
+        // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
+        let [_, most] =
+            slacks(run, (trial.problem(&run.problem), &trial.contact), tolerances, approach);
+        let late = lateness(run, trial, (approach, most));
+        let late = if late <= most_late { late } else { 0.0 };
+        let approach = approach + late;
+        if late > 0.0 {
+            let here = Behind::on(trial.problem(&run.problem), &trial.contact, approach);
+            run.field.advance(&here, iterations, self.rate_span)?;
+        }
+        match pulled(run, trial, tolerances, approach) {
+            Some((node, pressure)) => Err(run.not_monotone("pressure", node, pressure)),
+            None => Ok(late),
+        }
     }
 }
 
@@ -227,6 +190,7 @@ mod tests {
         let mut run = test_chain::surveyed(&gaps, &[0], 1.0)?;
         let mut estimated = Estimated::new(None, true);
         estimated.ranking = vec![(3.0, 8), (times[2], 6), (times[0], 2), (times[1], 4)];
+        estimated.rates = run.scalars.rates();
         estimated.last_span = 0.5;
         let tolerances = test_chain::tolerances(1.0, 0.0, tie);
         let iterations = &mut Altered::inexact(0.0);

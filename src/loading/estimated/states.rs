@@ -60,7 +60,7 @@ fn rates_of([unit_stiffness, closing, depth, work]: [f64; 4]) -> Rates {
 
 /// Rates of events with what they lack at the end, where they are `exact`: in proportion to how much the events so far have changed
 /// them.
-fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
+pub(super) fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
     let (start, exact) = (numbers(start), numbers(exact));
     let events: Vec<[f64; 4]> = events.iter().map(numbers).collect();
     let mut found = events.clone();
@@ -123,16 +123,20 @@ pub(super) fn enqueue(
     let plastic = run.plastic.clone();
     let mut walk = Walk::new(plastic.as_deref(), before);
     let mut walked = start;
-    let (mut open, mut plateau) = (Open::default(), Open::default());
+    let mut open = Open::default();
+    // Rates up to the first event are solved for: nothing is lacking there. The load is known behind a plateau as well.
+    let (mut first, mut known) = (Open::default(), Open::default());
     let mut along = Vec::with_capacity(events.len());
-    for (event, rates) in events.iter().zip(&rates) {
+    for (k, (event, rates)) in events.iter().zip(&rates).enumerate() {
         let elastic = walk.carried.nodes[0];
         open.advance(&mut walked, start.approach() + event.time, elastic);
+        if k == 0 {
+            (first, known) = (open, open);
+        }
         walk.pass(window.node(event.position), event.kind);
         walk.take(&mut walked, *rates);
         if walk.carried.nodes[0] == 0 {
-            // The load of a plateau is known.
-            plateau = open;
+            known = open;
         }
         along.push((walked, open));
     }
@@ -150,10 +154,9 @@ pub(super) fn enqueue(
     for (k, ((mut scalars, so_far), event)) in along.into_iter().zip(events).enumerate() {
         let node = window.node(event.position);
         let bounds = walk.pass(node, event.kind);
-        let [way, depth, work] = so_far.parts_of(&open);
-        let [way_of_load, ..] = so_far.since(&plateau).parts_of(&open.since(&plateau));
-        scalars.pin(&walked, &own, [way_of_load, way]);
-        scalars.pin_plastic(&walked, &own, [depth, work]);
+        let [way, depth, work] = so_far.since(&first).parts_of(&open.since(&first));
+        let [way_of_load, ..] = so_far.since(&known).parts_of(&open.since(&known));
+        scalars.pin(&walked, &own, [way_of_load, way, depth, work]);
         scalars.clamp_load(bounds);
         scalars.clamp_mean_gap();
         walk.take(&mut scalars, rates[k]);
@@ -168,38 +171,28 @@ pub(super) fn enqueue(
     Ok(())
 }
 
-/// Queues the states of events that come together, at the present approach: rates go from the first of two to the other in equal steps.
+/// Queues the states of events that come together, at the present approach, with the rates behind each.
 pub(super) fn enqueue_together(
     run: &mut LoadingRun,
     events: &[(usize, ContactEvent)],
     passed: Passed,
-    ([first, last], error): ([Rates; 2], f64),
+    (rates, error): (&[Rates], f64),
 ) -> Result<(), Error> {
-    let (first, last) = (numbers(&first), numbers(&last));
     let mut scalars = passed.start;
     scalars.advance(run.scalars.approach());
-    let stiffness = (last[0] - first[0]).abs();
+    let stiffnesses = [scalars.rates(), run.scalars.rates()].map(|rates| rates.unit_stiffness);
+    let stiffness = (stiffnesses[1] - stiffnesses[0]).abs();
     let error = scalars.reported_error(error, scalars.load_of(stiffness, error));
     let plastic = run.plastic.clone();
     let mut walk = Walk::new(plastic.as_deref(), passed.before);
-    for (k, &(node, kind)) in events.iter().enumerate() {
-        let part = (k + 1) as f64 / events.len() as f64;
-        let rates = std::array::from_fn(|k| first[k] + part * (last[k] - first[k]));
+    for (&(node, kind), &rates) in events.iter().zip(rates) {
         let bounds = walk.pass(node, kind);
         scalars.clamp_load(bounds);
         scalars.clamp_mean_gap();
-        walk.take(&mut scalars, rates_of(rates));
+        walk.take(&mut scalars, rates);
         run.enqueue_at(&scalars, (walk.step, kind, node), walk.contact_nodes(), error)?;
     }
     Ok(())
-}
-
-/// What each event of a window adds to stiffness and closing rate, scaled so that all of them add what they should.
-pub(super) fn pinned(window: &Window, all: [f64; 2]) -> Vec<[f64; 2]> {
-    let steps: Vec<[f64; 2]> = window.increments().collect();
-    let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
-    let scale = [0, 1].map(|k| if total(k) == 0.0 { 0.0 } else { all[k] / total(k) });
-    steps.into_iter().map(|step| [scale[0] * step[0], scale[1] * step[1]]).collect()
 }
 
 #[cfg(test)]
@@ -268,19 +261,21 @@ mod tests {
         Ok(())
     }
 
-    /// What is lacking at the end, here twice the load that was walked to, comes in proportion to the way.
+    /// What is lacking at the end comes in proportion to the way behind the first event: up to there nothing is.
     #[test]
     fn what_is_lacking_is_spread() -> Result<(), Error> {
         let begun = at(&[0], 1.0)?;
-        let mut run = at(&[0, 2], 3.0)?;
-        // The event is known to be at 0.5; at 1.0 load and stiffness lack what half a metre of 2/4 N/m gives, 1/4 N.
-        let settled = Settled { events: test_chain::events(&[(0, 1.0)]), errors: vec![0.0] };
-        let window = test_chain::apart(&[(2, 0.5)], 9.0);
+        let mut run = at(&[0, 2, 4], 3.0)?;
+        // The second event is known to be at 1.5; at 1.75 the load lacks what a quarter of a metre of 2/4 N/m gives.
+        let settled =
+            Settled { events: test_chain::events(&[(0, 0.5), (1, 1.75)]), errors: vec![0.0; 2] };
+        let window = test_chain::apart(&[(2, 0.5), (4, 1.5)], 9.0);
         let rates = [begun.scalars.rates(), run.scalars.rates()];
         enqueue(&mut run, (window, &settled), passed(&begun), (rates, &tolerances(0.0)))?;
-        let load = run.queue[0].contact.load;
-        // 1/2 N at the beginning and 1/2 N/m, and half of 1/4 N.
-        assert!((load - 1.125).abs() < 1e-14, "{load}");
+        let loads = [run.queue[0].contact.load, run.queue[1].contact.load];
+        // 1/2 N at the beginning, 1/2 N/m and then 1 N/m; and five sixths of 1/8 N.
+        assert!((loads[0] - 0.75).abs() < 1e-14, "{loads:?}");
+        assert!((loads[1] - 2.0 - 5.0 / 48.0).abs() < 1e-14, "{loads:?}");
         Ok(())
     }
 

@@ -203,7 +203,7 @@ fn nodes_that_come_sooner_make_windows_shorter() -> Result<(), Error> {
     gaps[1] = 1.0;
     let surface = crate::test_chain::surface(&gaps)?;
     let builder = crate::LoadingSolver::builder(&surface, &kernel).updater(Dense);
-    let mut run = builder.build()?.run;
+    let mut run = builder.build()?.into_path().run;
     let mut estimated = Estimated::new(Some(8), true);
     estimated.produce(&mut run, &mut Altered::inexact(1e-6))?;
     assert_eq!((run.timings.taken_back, run.timings.windows), (1, 1));

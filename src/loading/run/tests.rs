@@ -230,9 +230,9 @@ fn steps_are_taken_back() -> Result<(), Error> {
 }
 
 /// The events of a window on nodes until a horizon.
-fn played<U: LinearUpdater>(
+fn played(
     run: &mut LoadingRun,
-    updater: &mut U,
+    updater: &mut dyn LinearUpdater,
     (nodes, horizon): (&[usize], f64),
 ) -> Result<Window, Error> {
     let mut window = Window::default();
@@ -250,14 +250,14 @@ fn windows_are_those_of_any_updater() -> Result<(), Error> {
         [&Boussinesq::new(grid, 1.0)?, &PeriodicBoussinesq::new(grid, 1.0)?];
     for kernel in kernels {
         let builder = LoadingSolver::builder(&surface, kernel).updater(RecursiveCholesky::new());
-        let mut path = builder.max_nodes(40).build()?;
+        let mut path = builder.max_nodes(40).build()?.into_path();
         path.by_ref().try_for_each(|state| state.map(drop))?;
         let Phase::Factor { updater, .. } = &mut path.phase else {
             unreachable!("a factor stays");
         };
         let run = &mut path.run;
         assert_eq!(run.contact.len(), 40);
-        run.renew_field(updater, run.scalars.approach())?;
+        run.renew_field(updater.as_mut(), run.scalars.approach())?;
         let mut ranking = Vec::new();
         rank(run, &mut ranking)?;
         ranking.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -265,9 +265,10 @@ fn windows_are_those_of_any_updater() -> Result<(), Error> {
         let opened = (&nodes[..], ranking[12].0);
         let expected = played(run, &mut Dense, opened)?;
         assert!(expected.events().len() > 2);
-        for found in
-            [played(run, updater, opened)?, played(run, &mut ConjugateGradient::new(), opened)?]
-        {
+        for found in [
+            played(run, updater.as_mut(), opened)?,
+            played(run, &mut ConjugateGradient::new(), opened)?,
+        ] {
             assert!(found.touched().eq(expected.touched()));
             for (found, expected) in found.events().iter().zip(expected.events()) {
                 let error = (found.time - expected.time).abs();

@@ -10,7 +10,7 @@ use crate::{Boussinesq, InfluenceKernel, LoadingSolver, PeriodicBoussinesq};
 fn record() -> Result<LoadingRecord, Error> {
     let half_space = Boussinesq::new(Grid::square(2, 1.0)?, 1.0)?;
     let mut path = LoadingSolver::new(&Paraboloid::new(10.0)?, &half_space)?;
-    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let history = path.run()?;
     LoadingRecord::new(&path, history)
 }
 

@@ -16,8 +16,8 @@ mod tolerances;
 mod tuning;
 
 use super::{
-    Behind, Beside, Iterations, Kept, Left, LinearUpdater, Method, Proposal, Schur, Solution,
-    Solved, WindowFactor, check_count,
+    Behind, Beside, Iterations, Kept, Left, LinearUpdater, Proposal, Schur, Solution, Solved,
+    WindowFactor, check_count,
 };
 use crate::contact::ContactSequence;
 use crate::krylov::{Field, check_cells};
@@ -386,10 +386,6 @@ impl LinearUpdater for ConjugateGradient {
     fn bytes(&self, contact: usize, _watched: usize) -> usize {
         let nodes = self.solutions.as_ref();
         Self::bytes_of(nodes.map_or(0, |known| known.grid().nodes()), contact)
-    }
-
-    fn method(&self) -> Method {
-        Method::Iterations(Box::new(self.clone()))
     }
 }
 

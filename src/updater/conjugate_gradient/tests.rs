@@ -1,6 +1,6 @@
 use super::*;
 use crate::surface::{Amplitude, SelfAffine};
-use crate::updater::altered::Altered;
+use crate::updater::test_altered::Altered;
 use crate::updater::{Dense, Left, check};
 use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral};
 
@@ -246,6 +246,5 @@ fn boxes_pass_everything_on() -> Result<(), Error> {
     boxed.make_room(&problem, 1000)?;
     boxed = Box::new(ConjugateGradient::with_tolerance(1e-6)?);
     assert_eq!(boxed.bytes(1, 0), 1000);
-    assert!(matches!(boxed.method(), Method::Iterations(found) if found.tolerance() == 1e-6));
     Ok(())
 }

@@ -71,9 +71,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                     "asperity {nodes} load {load}, stiffness {stiffness}: {:.3} s, {} nodes ({:.1} %), \
                      greatest pressure {:.9e}, {} + {} iterations, {} + {:.1} convolutions",
                     seconds[1],
-                    solution.state.contact_nodes,
-                    100.0 * solution.state.contact_area_fraction,
-                    solution.max_pressure(),
+                    solution.contact.contact_nodes,
+                    100.0 * solution.contact.contact_area_fraction,
+                    solution.fields.max_pressure(),
                     effort.iterations,
                     effort.stiffness_iterations,
                     effort.convolutions,

@@ -22,9 +22,10 @@ use asperity::{
 };
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
 use asperity_studies::page::Section;
+use asperity_studies::study;
 use clap::Parser;
 
 const QUADRATURE: &str = include_str!("../../../tests/data/layers_free.csv");
@@ -56,13 +57,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -87,13 +82,8 @@ fn run(options: &Options) -> Result<(), Failure> {
     padded(&mut text).map_err(failed)?;
     iterations(options.nodes, "", &mut text).map_err(failed)?;
     let picture = coats(&options.out, &mut text)?;
-    println!("{text}");
-    let mut outcome = Outcome::default();
-    if let Some(page) = &options.report {
-        let section = Section { study: "layers", text: &text, pictures: &[picture] };
-        outcome.written(section.publish(page));
-    }
-    outcome.finish()
+    let section = Section { study: "layers", text: &text, pictures: &[picture] };
+    section.show(options.report.as_deref())
 }
 
 fn one_layer(young: f64, poisson: f64, thickness: f64, base: Base) -> Result<LayeredBody, Error> {
@@ -171,8 +161,8 @@ fn padded(text: &mut String) -> Result<(), Error> {
             let surface = asperity::HeightMap::new(heights)?;
             let mut solver =
                 FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-10).build()?;
-            let found = solver.solve(expected.state.load)?;
-            let difference = found.max_pressure() / expected.max_pressure() - 1.0;
+            let found = solver.solve(expected.contact.load)?;
+            let difference = found.fields.max_pressure() / expected.fields.max_pressure() - 1.0;
             let _ = write!(text, " {difference:.1e} |");
         }
         text.push('\n');
@@ -259,15 +249,15 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
 fn load_at(solver: &mut FixedLoadSolver, fraction: f64) -> Result<f64, Error> {
     let mut solution = solver.solve_target(ContactTarget::MeanGap(1.0))?;
     for _ in 0..20 {
-        let ratio = fraction / solution.state.contact_area_fraction;
+        let ratio = fraction / solution.contact.contact_area_fraction;
         if (ratio - 1.0).abs() < 0.01 {
             break;
         }
         // Full contact is far from a proportion.
-        let load = solution.state.load * ratio.powf(if fraction > 0.5 { 1.3 } else { 1.1 });
+        let load = solution.contact.load * ratio.powf(if fraction > 0.5 { 1.3 } else { 1.1 });
         solution = solver.solve(load)?;
     }
-    Ok(solution.state.load)
+    Ok(solution.contact.load)
 }
 
 /// Steps and convolutions of a single load, and of a stretch of the path from there.
@@ -283,11 +273,11 @@ fn load_and_stretch(
     let effort = &solution.effort;
     let load =
         format!("{} + {}, {}", effort.iterations, effort.stiffness_iterations, effort.convolutions);
-    let nodes = (0..grid.nodes()).filter(|&node| solution.contact_map.as_slice()[node]);
+    let nodes = (0..grid.nodes()).filter(|&node| solution.fields.contact_map.as_slice()[node]);
     let history: History = (1..)
         .zip(nodes)
         .map(|(count, node)| {
-            let mut contact = solution.state;
+            let mut contact = solution.contact;
             contact.contact_nodes = count;
             LoadingState::new(count, ContactEvent::Touch, grid.coordinates(node), contact)
         })

@@ -5,6 +5,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use asperity::contact::ContactFields;
 use asperity::surface::HeightMap;
 use asperity::updater::RecursiveCholesky;
 use asperity::{
@@ -15,6 +16,7 @@ use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREEN, ORANGE, Series, Style};
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
+use asperity_studies::study;
 use clap::{Parser, Subcommand};
 use nalgebra::DMatrix;
 
@@ -48,18 +50,16 @@ enum What {
 }
 
 fn main() -> ExitCode {
+    study::main(run)
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error| Failure::new("cannot follow a path", error);
-    let done = match Options::parse().what {
-        What::Drift { nodes, contact, every } => drift(nodes, contact, every).map_err(failed),
-        What::Condition { picture } => condition()
-            .map_err(failed)
-            .and_then(|found| picture.as_deref().map_or(Ok(()), |folder| draw(&found, folder))),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
+    match &options.what {
+        &What::Drift { nodes, contact, every } => drift(nodes, contact, every).map_err(failed),
+        What::Condition { picture } => {
+            let found = condition().map_err(failed)?;
+            picture.as_deref().map_or(Ok(()), |folder| draw(&found, folder))
         }
     }
 }
@@ -87,11 +87,10 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
         if !state.contact.contact_nodes.is_multiple_of(every) && !is_last {
             continue;
         }
-        let pressure = path.pressure()?;
-        let displacement = path.displacement()?;
+        let ContactFields { pressure, displacement, gap, .. } = path.fields()?;
         let certificate = path.certificate()?;
         let energy = 0.5 * cell * pressure.dot(&displacement);
-        let single = loads.solve(state.contact.load)?.state;
+        let single = loads.solve(state.contact.load)?.contact;
         let stiffness = [state.contact.contact_stiffness, single.contact_stiffness];
         let [Some(own), Some(other)] = stiffness else {
             return Err("there is no contact stiffness".into());
@@ -100,7 +99,7 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
             "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |",
             state.contact.contact_nodes,
             relative(state.contact.load, cell * pressure.sum()),
-            relative(state.contact.mean_gap, path.gap()?.mean()),
+            relative(state.contact.mean_gap, gap.mean()),
             relative(state.contact.energy, energy),
             relative(own, other),
             relative(state.contact.approach, single.approach),

@@ -12,7 +12,7 @@ use std::error::Error;
 use asperity::convolution::Convolution;
 use asperity::surface::{Amplitude, HeightMap};
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem, SelfAffine};
-use asperity_studies::smallest_gap::{LoadingPath, SmallestGap};
+use asperity_studies::smallest_gap::{EitherPath, SmallestGap};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 const SIDE: f64 = 1e-2;
@@ -88,9 +88,14 @@ fn examine(nodes: usize, seed: u64, rule: &str) -> Result<Findings, Box<dyn Erro
     let heights = HeightMap::sample(&surface, &grid)?;
     let half_space = Boussinesq::new(grid, 1.0)?;
     let most_nodes = grid.nodes_in(FRACTION)?;
-    let mut path: Box<dyn LoadingPath> = match rule {
+    let mut path: Box<dyn EitherPath> = match rule {
         "SmallestGap" => Box::new(SmallestGap::new(&heights, &half_space, most_nodes)?),
-        _ => Box::new(LoadingSolver::builder(&heights, &half_space).max_nodes(most_nodes).build()?),
+        _ => Box::new(
+            LoadingSolver::builder(&heights, &half_space)
+                .max_nodes(most_nodes)
+                .build()?
+                .into_path(),
+        ),
     };
 
     let mut rates = Rates::new(path.problem());

@@ -12,8 +12,9 @@ use std::time::Instant;
 use asperity::convolution::Convolution;
 use asperity::stress::{Measure, Stress, Subsurface};
 use asperity::{Boundary, Boussinesq, Error, Grid, PeriodicBoussinesq, Spectral};
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::Failure;
 use asperity_studies::page::Section;
+use asperity_studies::study;
 use clap::Parser;
 use nalgebra::DMatrix;
 
@@ -35,13 +36,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -52,13 +47,8 @@ fn run(options: &Options) -> Result<(), Failure> {
     meshes(&mut text).map_err(failed)?;
     waves(&mut text).map_err(failed)?;
     times(options.nodes, &mut text).map_err(failed)?;
-    println!("{text}");
-    let mut outcome = Outcome::default();
-    if let Some(page) = &options.report {
-        let section = Section { study: "stress", text: &text, pictures: &[] };
-        outcome.written(section.publish(page));
-    }
-    outcome.finish()
+    let section = Section { study: "stress", text: &text, pictures: &[] };
+    section.show(options.report.as_deref())
 }
 
 /// √(1 − x²) over a cell about x.

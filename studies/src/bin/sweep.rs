@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             if arguments.verbose {
                 eprintln!(
                     "cold {:.2} %: {time:.3} s, {} + {} iterations, {} + {:.1} convolutions",
-                    100.0 * solution.state.contact_area_fraction,
+                    100.0 * solution.contact.contact_area_fraction,
                     effort.iterations,
                     effort.stiffness_iterations,
                     effort.convolutions,
@@ -92,7 +92,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             convolutions += effort.convolutions as f64 + effort.coarse_convolutions;
             let certificate = solution.certificate;
             // Relative to the approach, as the tolerance is.
-            let scale = certificate.length / solution.state.approach;
+            let scale = certificate.length / solution.contact.approach;
             worst = worst
                 .max(certificate.greatest_contact_gap * scale)
                 .max(-certificate.least_gap * scale);
@@ -100,7 +100,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let now = start.elapsed().as_secs_f64();
                 eprintln!(
                     "sweep {:.2} %: {:.3} s, {} + {} iterations, {} + {:.1} convolutions",
-                    100.0 * solution.state.contact_area_fraction,
+                    100.0 * solution.contact.contact_area_fraction,
                     now - last,
                     effort.iterations,
                     effort.stiffness_iterations,

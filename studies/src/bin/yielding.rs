@@ -19,9 +19,10 @@ use asperity::{
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
 use asperity_studies::page::Section;
+use asperity_studies::study;
 use clap::Parser;
 use nalgebra::DMatrix;
 
@@ -43,13 +44,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -61,13 +56,8 @@ fn run(options: &Options) -> Result<(), Failure> {
     let pictures = metals(&options.out, &mut text)?;
     sphere(&mut text).map_err(failed)?;
     tamaas(&mut text);
-    println!("{text}");
-    let mut outcome = Outcome::default();
-    if let Some(page) = &options.report {
-        let section = Section { study: "yielding", text: &text, pictures: &pictures };
-        outcome.written(section.publish(page));
-    }
-    outcome.finish()
+    let section = Section { study: "yielding", text: &text, pictures: &pictures };
+    section.show(options.report.as_deref())
 }
 
 /// The surface of the first command, of steel, with a hardness and without.
@@ -110,9 +100,8 @@ fn metals(directory: &Path, text: &mut String) -> Result<Vec<PathBuf>, Failure> 
     // The map at 10 %.
     let history: History = yielding.iter().copied().collect();
     let state = history.at_area_fraction(0.1).ok_or_else(|| Failure::request("no such area"))?;
-    let pressure = path.pressure_at(&state).map_err(failed)?;
-    let contact = path.contact_map_at(&state).map_err(failed)?;
-    let yielded = path.yielded_map_at(&state).map_err(failed)?;
+    let fields = path.fields_at(&state).map_err(failed)?;
+    let (pressure, contact, yielded) = (fields.pressure, fields.contact_map, fields.yielded_map);
     let values =
         DMatrix::from_fn(256, 256, |ix, iy| match (contact[(ix, iy)], yielded[(ix, iy)]) {
             (false, _) => f64::NAN,

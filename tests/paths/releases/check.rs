@@ -66,13 +66,13 @@ pub(super) fn check<U: LinearUpdater>(
         let slack = 0.3 * slack / certificate.length;
         assert!(certificate.least_gap >= -slack, "{certificate:?}");
         assert!(certificate.greatest_contact_gap <= slack, "{certificate:?}");
-        compare(&path.pressure().unwrap(), &state);
+        compare(&path.fields().unwrap().pressure, &state);
         if let Some(last) = states.last() {
             assert!(state.contact.load >= last.contact.load);
             // Half way from the last event to this one the contact is that after the last.
             let interval: History = [*last, state].into_iter().collect();
             let middle = interval.at_load(0.5 * (last.contact.load + state.contact.load)).unwrap();
-            compare(&path.pressure_at(&middle).unwrap(), &middle);
+            compare(&path.fields_at(&middle).unwrap().pressure, &middle);
             let work = 0.5
                 * (last.contact.load + state.contact.load)
                 * (state.contact.approach - last.contact.approach);
@@ -85,18 +85,18 @@ pub(super) fn check<U: LinearUpdater>(
 
     // Every earlier state, whatever left since, and the state that a history reads.
     for state in states.iter().step_by(3) {
-        compare(&path.pressure_at(state).unwrap(), state);
+        compare(&path.fields_at(state).unwrap().pressure, state);
     }
     let last = *states.last().unwrap();
     let history: History = states.iter().copied().collect();
     let half = history.at_load(0.5 * last.contact.load).unwrap();
-    compare(&path.pressure_at(&half).unwrap(), &half);
+    compare(&path.fields_at(&half).unwrap().pressure, &half);
     let first_half = history.at_area_fraction(0.5);
     let expected = states.iter().find(|state| state.contact.contact_nodes >= gaps.len() / 2);
     assert_eq!(first_half.as_ref(), expected);
     // Nothing happens any more: the same contact far beyond.
     let beyond = loaded(last, 10.0 * last.contact.load + 1.0);
-    compare(&path.pressure_at(&beyond).unwrap(), &beyond);
+    compare(&path.fields_at(&beyond).unwrap().pressure, &beyond);
     let releases = states.iter().filter(|state| state.event == ContactEvent::Release);
     releases.count()
 }

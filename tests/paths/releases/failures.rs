@@ -70,7 +70,7 @@ fn states_before_a_failure_stay() {
         for state in &expected[..good] {
             let approach = kernel.own_approach(state);
             let exact = complementary(&kernel.matrix(), &from_first_touch(&gaps), approach);
-            let found = path.pressure_at(state).unwrap();
+            let found = path.fields_at(state).unwrap().pressure;
             let error = (DVector::from_column_slice(found.as_slice()) - &exact).amax();
             assert!(error <= EXACT * exact.max().max(1e-3), "{state:?}: {error:e}");
         }

@@ -50,7 +50,10 @@ fn paths_with_releases_go_on_from_any_state() {
             }
             assert_eq!(resumed.contact_order(), whole.contact_order());
             for state in all.iter().step_by(5) {
-                let (found, expected) = (resumed.pressure_at(state), whole.pressure_at(state));
+                let (found, expected) = (
+                    resumed.fields_at(state).map(|fields| fields.pressure),
+                    whole.fields_at(state).map(|fields| fields.pressure),
+                );
                 let (found, expected) = (found.unwrap(), expected.unwrap());
                 let error = (&found - &expected).amax();
                 assert!(error <= 1e-9 * (1.0 + expected.amax()), "{error:e}, {state:?}");
@@ -79,7 +82,7 @@ fn earlier_contacts_are_factored_within_the_budget() {
             Some(error) => panic!("{error}"),
             None => ended += 1,
         }
-        match path.pressure_at(&before) {
+        match path.fields_at(&before).map(|fields| fields.pressure) {
             Ok(_) => answered += 1,
             Err(Error::MemoryBudget { needed, budget: given, nodes_that_fit }) => {
                 assert!(needed > given && given == budget, "{needed} {given}");
@@ -102,7 +105,7 @@ fn records_with_releases_are_read_back() {
 
     for (number, (kernel, gaps, all)) in cases(3).enumerate() {
         let mut path = kernel.path(&gaps);
-        let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+        let history = path.run().unwrap();
         let record = LoadingRecord::new(&path, history).unwrap();
         let name = format!("asperity-releases-{}-{number}.npz", std::process::id());
         let file = std::env::temp_dir().join(name);
@@ -122,8 +125,8 @@ fn records_with_releases_are_read_back() {
         assert!(matches!(read.resume(), Err(Error::ForeignKernel)));
         let mut replay = read.replay_on(&kernel).unwrap();
         for state in all.iter().step_by(4) {
-            let expected = path.pressure_at(state).unwrap();
-            let found = replay.pressure_at(state).unwrap();
+            let expected = path.fields_at(state).unwrap().pressure;
+            let found = replay.fields_at(state).unwrap().pressure;
             // Residuals of 1e-10 of the approach, times the condition number.
             let allowed = 1e-7 * (state.contact.approach + expected.amax());
             assert!((&found - &expected).amax() <= allowed, "{state:?}");

@@ -133,7 +133,7 @@ fn a_wrong_answer_at_any_call_is_refused_or_changes_nothing() {
         let mut solver = FixedLoadSolver::new(&heights(), kernel)?;
         solver.solve(1.0)
     };
-    let load = single(&right).unwrap().state;
+    let load = single(&right).unwrap().contact;
     for wrong in WRONGS {
         let (mut refused, mut panicked) = (0, 0);
         for at in 0..right.calls.get() {
@@ -173,7 +173,7 @@ fn a_wrong_answer_at_any_call_is_refused_or_changes_nothing() {
                 }
             }
             if let Ok(Ok(solution)) = found_load {
-                let change = solution.state.approach - load.approach;
+                let change = solution.contact.approach - load.approach;
                 // The tolerance of a single load.
                 assert!(change.abs() <= 1e-8 * load.approach, "{context}");
             }

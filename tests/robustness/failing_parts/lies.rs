@@ -34,7 +34,7 @@ fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
         let (mut count, mut failure) = (0, None);
         while let Some(item) = path.next() {
             match item {
-                Ok(state) if path.updater().unwrap().state.struck.get().is_none() => {
+                Ok(state) if path.updater().unwrap().state.struck().is_none() => {
                     assert!(state == expected[count], "{context}: {state:?}");
                     count += 1;
                 }
@@ -50,7 +50,7 @@ fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
                 }
             }
         }
-        match path.updater().unwrap().state.struck.get() {
+        match path.updater().unwrap().state.struck() {
             Some(_) => struck += 1,
             None if at >= path.updater().unwrap().state.calls() => return (struck, refused),
             None => assert!(count == expected.len() && failure.is_none(), "{context}"),
@@ -112,7 +112,7 @@ fn the_checker_finds_every_wrong_number() {
                 for at in 0.. {
                     let mut failing = failing((maker.1)(), fault, at);
                     let checked = updater::check(&mut failing, &problem);
-                    if failing.state.struck.get().is_none() {
+                    if failing.state.struck().is_none() {
                         assert!(checked.is_ok());
                         if at >= failing.state.calls() {
                             break;

@@ -32,7 +32,7 @@ fn nothing_is_yielded_after_a_panic_at_any_call() {
                         }
                     };
                     assert!(states == expected[..states.len()], "{context}");
-                    let Some(method) = path.updater().unwrap().state.struck.get() else {
+                    let Some(method) = path.updater().unwrap().state.struck() else {
                         // Beyond the last call.
                         assert!(!has_panicked && states.len() == expected.len());
                         break;

@@ -21,8 +21,8 @@ fn questions_that_fail_do_not_disturb_the_path() {
                         let earlier = states[states.len() / 2];
                         path.updater().unwrap().state.arm(ahead);
                         let asked = catch_unwind(AssertUnwindSafe(|| {
-                            path.pressure()?;
-                            path.pressure_at(&earlier)?;
+                            path.fields()?;
+                            path.fields_at(&earlier)?;
                             path.certificate()
                         }));
                         failed += match asked {

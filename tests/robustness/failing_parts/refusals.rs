@@ -33,7 +33,7 @@ pub(super) fn is_over(
         let in_contact = map.iter().filter(|in_contact| **in_contact).count();
         assert_eq!(in_contact, state.contact.contact_nodes, "{context}");
         // Of an updater that has failed once anything but a wrong answer is welcome.
-        if let Ok(pressure) = path.pressure_at(state) {
+        if let Ok(pressure) = path.fields_at(state).map(|fields| fields.pressure) {
             answered += 1;
             let allowed = small.allowed(state, maker) * small.stiffness();
             for (found, expected) in pressure.iter().zip(&small.pressure(state)) {
@@ -78,7 +78,7 @@ fn an_error_at_any_call_is_the_last_item() {
                     }
                 }
                 assert!(states == expected[..states.len()], "{context}");
-                let Some(method) = path.updater().unwrap().state.struck.get() else {
+                let Some(method) = path.updater().unwrap().state.struck() else {
                     // A question that cannot fail.
                     assert!(failure.is_none() && states.len() == expected.len());
                     continue;

@@ -1,11 +1,11 @@
 //! An updater of the crate, one call of which goes wrong.
 
-use std::cell::Cell;
 use std::panic::resume_unwind;
-use std::rc::Rc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::Error;
-use asperity::updater::{LinearUpdater, Method, Schur, Solution};
+use asperity::updater::{LinearUpdater, Schur, Solution};
 use asperity_testing::{Altered, Call};
 
 /// What happens at the call.
@@ -44,23 +44,20 @@ pub(super) fn is_refusal(error: &Error) -> bool {
 }
 
 /// An updater that spoils one call.
-pub(super) type Failing<U> = Altered<'static, U, Rc<Strike>>;
+pub(super) type Failing<U> = Altered<U, Arc<Strike>>;
 
 /// Passes on all calls to an updater but one, number `at` from 0.
 pub(super) fn failing<U: LinearUpdater + 'static>(inner: U, fault: Fault, at: usize) -> Failing<U> {
-    let strike =
-        Rc::new(Strike { fault, at: Cell::new(at), calls: Cell::new(0), struck: Cell::new(None) });
-    let [calls, bytes] = [(); 2].map(|()| Rc::clone(&strike));
-    Altered::with_state(inner, strike)
-        .on_call(move |inner, call| calls.call(inner, call))
-        .on_bytes(move |inner, (contact, watched)| {
-            bytes.ask("bytes", || inner.bytes(contact, watched))
-        })
-        // Iterations are asked as an updater is: only so do their calls come by here.
-        .on_method(|inner| match inner.method() {
-            Method::Iterations(_) => Method::Factor,
-            method => method,
-        })
+    let strike = Arc::new(Strike {
+        fault,
+        at: AtomicUsize::new(at),
+        calls: AtomicUsize::new(0),
+        struck: Mutex::new(None),
+    });
+    let [calls, bytes] = [(); 2].map(|()| Arc::clone(&strike));
+    Altered::with_state(inner, strike).on_call(move |inner, call| calls.call(inner, call)).on_bytes(
+        move |inner, (contact, watched)| bytes.ask("bytes", || inner.bytes(contact, watched)),
+    )
 }
 
 /// Methods that answer with numbers.
@@ -71,27 +68,35 @@ const ANSWERS: [&str; 4] = ["solve", "watch", "solve_for", "watch_both"];
 pub(super) struct Strike {
     fault: Fault,
     /// Which call it is, from 0.
-    at: Cell<usize>,
-    calls: Cell<usize>,
+    at: AtomicUsize,
+    calls: AtomicUsize,
     /// The method that the fault struck.
-    pub(super) struck: Cell<Option<&'static str>>,
+    struck: Mutex<Option<&'static str>>,
 }
 
 impl Strike {
     /// How many calls there were.
     pub(super) fn calls(&self) -> usize {
-        self.calls.get()
+        self.calls.load(Relaxed)
+    }
+
+    /// The method that the fault struck.
+    pub(super) fn struck(&self) -> Option<&'static str> {
+        *self.struck.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn set_struck(&self, method: Option<&'static str>) {
+        *self.struck.lock().unwrap_or_else(PoisonError::into_inner) = method;
     }
 
     /// Spoils the call that comes `ahead` calls after the next one.
     pub(super) fn arm(&self, ahead: usize) {
-        self.at.set(self.calls() + ahead);
+        self.at.store(self.calls() + ahead, Relaxed);
     }
 
     /// Whether this call is the one, of a method to which the fault can happen.
     fn strikes(&self, method: &'static str) -> bool {
-        let call = self.calls.get();
-        self.calls.set(call + 1);
+        let call = self.calls.fetch_add(1, Relaxed);
         let possible = match (self.fault, method) {
             (Fault::PanicBefore | Fault::PanicAfter, _) => true,
             (_, "bytes") => false,
@@ -106,9 +111,9 @@ impl Strike {
             (Fault::Each(..) | Fault::Last(..), _) => method == "watch" || method == "watch_both",
             (Fault::Length(_), _) => ANSWERS.contains(&method) && method != "solve_for",
         };
-        let strikes = possible && call == self.at.get();
+        let strikes = possible && call == self.at.load(Relaxed);
         if strikes {
-            self.struck.set(Some(method));
+            self.set_struck(Some(method));
         }
         strikes
     }
@@ -130,7 +135,7 @@ impl Strike {
             _ => {
                 if let Err(error) = call.ask(inner) {
                     // There is no answer to spoil.
-                    self.struck.set(None);
+                    self.set_struck(None);
                     return Err(error);
                 }
             }
@@ -139,7 +144,7 @@ impl Strike {
             Call::Watch { schur, .. } | Call::WatchBoth { schur, .. } => {
                 spoil_schur(self.fault, schur);
             }
-            Call::SolveFor { rhs: [], .. } => self.struck.set(None),
+            Call::SolveFor { rhs: [], .. } => self.set_struck(None),
             Call::SolveFor { rhs, .. } => {
                 let mut values: Vec<f64> = rhs.iter().map(|x| x[0]).collect();
                 change(self.fault, &mut values);
@@ -149,7 +154,7 @@ impl Strike {
             }
             // An empty answer has nothing to spoil.
             Call::Solve { count: 0, .. } if !matches!(self.fault, Fault::Length(1..)) => {
-                self.struck.set(None);
+                self.set_struck(None);
             }
             Call::Solve { solution, .. } => spoil_solution(self.fault, solution),
             _ => {}

@@ -54,7 +54,7 @@ fn healthy(kernel: &dyn InfluenceKernel) -> Vec<(LoadingState, DMatrix<f64>)> {
     let mut path = path(kernel, MAKERS[0], Fault::Refuse, usize::MAX).unwrap();
     let states: Vec<LoadingState> = path.by_ref().map(Result::unwrap).collect();
     assert_eq!((states.len(), path.end()), (40, Some(LoadingEnd::FullyPlastic)));
-    states.into_iter().map(|state| (state, path.pressure_at(&state).unwrap())).collect()
+    states.into_iter().map(|state| (state, path.fields_at(&state).unwrap().pressure)).collect()
 }
 
 /// What was yielded is known afterwards as before; of an updater that has failed no answer is welcome but a right one.
@@ -67,10 +67,10 @@ fn is_known(path: &mut Path, states: &[LoadingState], healthy: &[(LoadingState, 
         let map = path.contact_map_at(state).unwrap();
         let count = map.iter().filter(|is_in| **is_in).count();
         assert_eq!(count, state.contact.contact_nodes);
-        let yielded = path.yielded_map_at(state).unwrap();
+        let yielded = path.fields_at(state).unwrap().yielded_map;
         let count = yielded.iter().filter(|is_in| **is_in).count();
         assert_eq!(count, state.contact.plastic.unwrap().yielded_nodes);
-        if let Ok(found) = path.pressure_at(state) {
+        if let Ok(found) = path.fields_at(state).map(|fields| fields.pressure) {
             assert!((found - pressure).amax() <= 1e-9, "{state:?}");
         }
     }
@@ -99,7 +99,7 @@ fn errors_and_panics_end_paths_on_which_nodes_yield() {
                             Err(_) => break Some(true),
                         }
                     };
-                    let Some(method) = path.updater().unwrap().state.struck.get() else {
+                    let Some(method) = path.updater().unwrap().state.struck() else {
                         if ended.is_none() && at >= path.updater().unwrap().state.calls() {
                             break;
                         }

@@ -84,14 +84,14 @@ fn read(
     spectrum: Spectrum,
     load: f64,
 ) -> Result<Contact, Error> {
-    let state = &solution.state;
+    let state = &solution.contact;
     let stiffness = state.interfacial_stiffness.unwrap_or(f64::NAN);
-    let map = &solution.contact_map;
-    let gaps = gap_distribution(&solution.gap, map, Bins::PerDecade(GAP_BINS))?;
+    let map = &solution.fields.contact_map;
+    let gaps = gap_distribution(&solution.fields.gap, map, Bins::PerDecade(GAP_BINS))?;
     let open = 1.0 - gaps.contact_share;
     let middle = |edges: &[f64]| (edges[0] * edges[1]).sqrt();
     let gaps = gaps.histogram.edges().windows(2).zip(gaps.histogram.density());
-    let found = pressure_distribution(&solution.pressure, map, Bins::Linear(PRESSURE_BINS))?;
+    let found = pressure_distribution(&solution.fields.pressure, map, Bins::Linear(PRESSURE_BINS))?;
     let share = found.contact_share;
     let pressures = found.histogram.edges().windows(2).zip(found.histogram.density());
     Ok(Contact {
@@ -103,7 +103,7 @@ fn read(
         corrected: corrected_area_fraction(map, grid, Boundary::Periodic)?,
         gap: state.mean_gap,
         stiffness: stiffness * spectrum.rms_height() / state.load,
-        peak: solution.max_pressure() / state.mean_pressure(),
+        peak: solution.fields.max_pressure() / state.mean_pressure(),
         gaps: gaps
             .map(|(edges, density)| (middle(edges), open * density * middle(edges)))
             .filter(|(_, density)| *density > 0.0)

@@ -13,6 +13,7 @@ use std::process::ExitCode;
 
 use asperity_cli::outcome::Failure;
 use asperity_studies::findings::{Findings, Picture, Places};
+use asperity_studies::study;
 use clap::Parser;
 
 use contact::{BAND, solve};
@@ -37,13 +38,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {

@@ -53,14 +53,14 @@ impl Full {
             // Nodes on the crests and in the valleys.
             let mut solver = solver(kernel, grid, grid.position(0, 0))?;
             let solution = solver.solve(BEYOND * full)?;
-            let found = solution.state.load - solution.pressure.min();
-            peak = solution.pressure.max() / full;
+            let found = solution.contact.load - solution.fields.pressure.min();
+            peak = solution.fields.pressure.max() / full;
             // ½ p u in the mean, both in proportion to the wave.
             let energy = full * AMPLITUDE / 8.0;
-            let relative = [found / full, peak / (1.0 + BEYOND), solution.state.energy / energy];
+            let relative = [found / full, peak / (1.0 + BEYOND), solution.contact.energy / energy];
             errors.push((nodes, relative.map(|ratio| (ratio - 1.0).abs())));
             let mut is_full = |load: f64| -> Result<bool, Error> {
-                Ok(solver.solve(load)?.state.contact_nodes == grid.nodes())
+                Ok(solver.solve(load)?.contact.contact_nodes == grid.nodes())
             };
             bracketed &= is_full(found * (1.0 + BRACKET))? && !is_full(found * (1.0 - BRACKET))?;
         }
@@ -124,7 +124,7 @@ impl Limit {
                 FixedLoadSolver::builder(&surface, &kernel).stiffness(false).build()?;
             for (distance, ratios) in distances.iter().zip(&mut found) {
                 let solution = solver.solve(load(*distance) * full)?;
-                ratios.push(ratio(&exact, solution.state.load, area(&solution, &grid)?));
+                ratios.push(ratio(&exact, solution.contact.load, area(&solution, &grid)?));
             }
         }
         let spread = found.into_iter().map(Spread::of);
@@ -133,7 +133,7 @@ impl Limit {
 }
 
 fn area(solution: &FixedLoadSolution, grid: &Grid) -> Result<f64, Error> {
-    corrected_area_fraction(&solution.contact_map, grid, asperity::Boundary::Periodic)
+    corrected_area_fraction(&solution.fields.contact_map, grid, asperity::Boundary::Periodic)
 }
 
 fn surface(crest: (f64, f64)) -> Result<BiWave, asperity::SurfaceError> {

@@ -18,6 +18,7 @@ use std::process::ExitCode;
 
 use asperity_cli::outcome::Failure;
 use asperity_studies::findings::{Findings, Picture, Places};
+use asperity_studies::study;
 use clap::Parser;
 
 use double_wave::Comparison;
@@ -33,13 +34,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {

@@ -29,8 +29,8 @@ pub(crate) fn curves() -> Result<Vec<Curve>, Error> {
 
 /// The greatest pressure, and how far from `x` it is.
 fn peak(solution: &FixedLoadSolution, grid: &Grid, x: f64) -> (f64, f64) {
-    let (ix, iy) = solution.pressure.iamax_full();
-    (solution.pressure[(ix, iy)], grid.position(ix, iy).0 - x)
+    let (ix, iy) = solution.fields.pressure.iamax_full();
+    (solution.fields.pressure[(ix, iy)], grid.position(ix, iy).0 - x)
 }
 
 fn cylinder(cells: usize) -> Result<Errors, Error> {
@@ -48,8 +48,8 @@ fn cylinder(cells: usize) -> Result<Errors, Error> {
             FixedLoadSolver::builder(&surface, &kernel).tolerance(TOLERANCE).build()?;
         for solution in solver.sweep(loads(hertz.load_at_half_width(a) * length)) {
             let solution = solution?;
-            let load = solution.state.load / length;
-            let width = solution.state.contact_area / length;
+            let load = solution.contact.load / length;
+            let width = solution.contact.contact_area / length;
             errors.add(Quantity::Area, width, 2.0 * hertz.half_width(load));
             let (found, x) = peak(&solution, &grid, x);
             errors.add(Quantity::Pressure, found, hertz.pressure(x, load));
@@ -72,7 +72,7 @@ fn wave(cells: usize, kernel: Periodic) -> Result<Errors, Error> {
         for solution in solver.sweep(loads(RATIO * exact.full_contact_pressure())) {
             let solution = solution?;
             // On the unit square loads are mean pressures.
-            let (state, mean) = (&solution.state, solution.state.load);
+            let (state, mean) = (&solution.contact, solution.contact.load);
             let area = exact.contact_area_fraction(mean);
             errors.add(Quantity::Area, state.contact_area_fraction, area);
             errors.add(Quantity::Distance, state.mean_gap, exact.mean_gap(mean));

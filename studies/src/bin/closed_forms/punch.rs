@@ -39,7 +39,7 @@ fn circular_punch(cells: usize) -> Result<Errors, Error> {
             let face = |ix, iy| if distance(ix, iy) < radius { 0.0 } else { -4.0 };
             let heights = HeightMap::new(DMatrix::from_fn(grid.nx(), grid.ny(), face))?;
             let solution = solver(&heights, grid)?.solve(load)?;
-            let stiffness = solution.state.contact_stiffness.unwrap_or(f64::NAN);
+            let stiffness = solution.contact.contact_stiffness.unwrap_or(f64::NAN);
             errors.add(Quantity::Stiffness, stiffness, exact.contact_stiffness());
             let ring = (RING.0 * cells, RING.1 * cells);
             let pressure = |(x, y): (f64, f64)| exact.pressure(x.hypot(y), 1.0);
@@ -62,7 +62,7 @@ impl SquarePunch {
             let n = 2 * half;
             let grid = Grid::square(n, 1.0)?;
             let solution = solver(&FlatPunch::default(), grid)?.solve(1.0)?;
-            Ok((n, solution.state.contact_stiffness.unwrap_or(f64::NAN)))
+            Ok((n, solution.contact.contact_stiffness.unwrap_or(f64::NAN)))
         };
         Ok(Self { stiffness: PUNCH_CELLS.iter().map(stiffness).collect::<Result<_, Error>>()? })
     }

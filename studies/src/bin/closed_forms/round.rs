@@ -45,10 +45,10 @@ impl Contact<'_> {
         let mut solver = solver(self.surface, self.grid)?;
         for solution in solver.sweep(loads(target)) {
             let solution = solution?;
-            let state = &solution.state;
+            let state = &solution.contact;
             let exact = (self.exact)(state.load);
             let fraction =
-                corrected_area_fraction(&solution.contact_map, &self.grid, Boundary::Free)?;
+                corrected_area_fraction(&solution.fields.contact_map, &self.grid, Boundary::Free)?;
             let corrected = fraction * self.grid.nominal_area();
             errors.add(Quantity::Area, state.contact_area, exact.area);
             errors.add(Quantity::CorrectedArea, corrected, exact.area);
@@ -77,10 +77,10 @@ pub(crate) fn pressure_ratio(
         let place = (x - apex.0, y - apex.1);
         let inside = |(from, to): (f64, f64)| (from..to).contains(&place.0.hypot(place.1));
         let counts = ring.is_none_or(inside);
-        counts.then(|| solution.pressure[(ix, iy)] / exact(place))
+        counts.then(|| solution.fields.pressure[(ix, iy)] / exact(place))
     };
     let nodes = match ring {
-        None => vec![solution.pressure.iamax_full()],
+        None => vec![solution.fields.pressure.iamax_full()],
         Some(_) => (0..grid.nodes()).map(|node| grid.coordinates(node)).collect(),
     };
     let ratios: Vec<f64> = nodes.into_iter().filter_map(ratio).collect();

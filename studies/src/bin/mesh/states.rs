@@ -76,13 +76,13 @@ impl Mesh {
         for load in LOADS {
             // On the unit square, with E* = 1, loads are mean pressures over E*.
             let solution = solver.solve(load * gradient)?;
-            let state = &solution.state;
+            let state = &solution.contact;
             let stiffness = state.interfacial_stiffness.unwrap_or(f64::NAN);
             states.push(State {
                 load,
                 area: state.contact_area_fraction,
                 corrected: corrected_area_fraction(
-                    &solution.contact_map,
+                    &solution.fields.contact_map,
                     &grid,
                     Boundary::Periodic,
                 )?,

@@ -32,7 +32,7 @@ pub(crate) fn effect() -> Result<Vec<Boundary>, Failure> {
                 .build()?;
             let solve = |load: f64| {
                 let solution = solver.solve(load * NOMINAL_AREA * E_STAR)?;
-                Ok(solution.pressure.iter().filter(|p| **p > 0.0).count())
+                Ok(solution.fields.pressure.iter().filter(|p| **p > 0.0).count())
             };
             LOADS.into_iter().map(solve).collect::<Result<Vec<usize>, asperity::Error>>()
         };

@@ -113,7 +113,7 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
         };
         let solution = solver.solve(point.load * NOMINAL_AREA * E_STAR).map_err(failed)?;
         let patches =
-            Patches::new(&solution.contact_map, &grid, Boundary::Free, Connectivity::Four)
+            Patches::new(&solution.fields.contact_map, &grid, Boundary::Free, Connectivity::Four)
                 .map_err(failed)?;
         let mut sizes: Vec<usize> = patches.patches().iter().map(|patch| patch.nodes).collect();
         sizes.sort_unstable();
@@ -125,15 +125,15 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
         maps.push(Map {
             surface: family.rough.name(),
             load: point.load,
-            area: solution.state.contact_area_fraction,
-            greatest: solution.max_pressure() / E_STAR,
-            reduced: solution.max_pressure() / (E_STAR * family.gradient),
-            at_border: is_at_border(&solution.pressure),
+            area: solution.contact.contact_area_fraction,
+            greatest: solution.fields.max_pressure() / E_STAR,
+            reduced: solution.fields.max_pressure() / (E_STAR * family.gradient),
+            at_border: is_at_border(&solution.fields.pressure),
             patches: sizes.len(),
             small: small as f64 / sizes.len() as f64,
             in_small: in_small / contact,
             in_large: in_large / contact,
-            pressure: solution.pressure / (E_STAR * family.gradient),
+            pressure: solution.fields.pressure / (E_STAR * family.gradient),
         });
     }
     Ok(maps)

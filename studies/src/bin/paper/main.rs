@@ -47,7 +47,6 @@ use std::time::Instant;
 
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
-use clap::Parser;
 
 use effort::Effort;
 use iterations::Iterations;
@@ -58,13 +57,7 @@ use study::Study;
 use whole_path::WholePath;
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    asperity_studies::study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {

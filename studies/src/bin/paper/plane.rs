@@ -189,7 +189,7 @@ impl Plane {
         let state = self.history.at_load(load);
         let present = self.history.states().len();
         let state = state.ok_or(Error::StateNotReached { step: present + 1, present })?;
-        let pressure = self.path.pressure_at(&state)?;
+        let pressure = self.path.fields_at(&state)?.pressure;
         let x = |ix: usize| grid.position(ix, 0).0 - grid.center().0;
         Ok((0..grid.nx()).map(|ix| (x(ix), pressure[(ix, 0)])).collect())
     }

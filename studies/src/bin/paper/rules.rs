@@ -1,7 +1,7 @@
 //! The two rules for the next contact on the surface of Table 1.
 
 use asperity::{Boussinesq, LoadingSolver, LoadingState};
-use asperity_studies::smallest_gap::{LoadingPath, SmallestGap};
+use asperity_studies::smallest_gap::{EitherPath, SmallestGap};
 
 use crate::surfaces::{E_STAR, Rough, grid};
 use asperity_cli::outcome::Failure;
@@ -55,7 +55,7 @@ impl Rules {
         eprintln!("rules: {steps} nodes of {nodes} x {nodes} by each");
         let half_space = Boussinesq::new(grid, E_STAR).map_err(failed)?;
         let exact = LoadingSolver::builder(&heights, &half_space).max_nodes(steps).build();
-        let exact = exact.and_then(examine).map_err(failed)?;
+        let exact = exact.and_then(|path| examine(path.into_path())).map_err(failed)?;
         let smallest_gap = SmallestGap::new(&heights, &half_space, steps);
         let smallest_gap = smallest_gap.and_then(examine).map_err(failed)?;
         let sq = heights.rms_height();
@@ -77,7 +77,7 @@ impl Rules {
     }
 }
 
-fn examine(mut path: impl LoadingPath) -> Result<Findings, asperity::Error> {
+fn examine(mut path: impl EitherPath) -> Result<Findings, asperity::Error> {
     let mut found = Findings::default();
     while let Some(state) = path.next() {
         let state = state?;

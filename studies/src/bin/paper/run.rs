@@ -88,12 +88,16 @@ impl Run {
             .map_err(failed)?;
         for solution in solver.sweep(targets) {
             let solution = solution.map_err(failed)?;
-            let patches =
-                Patches::new(&solution.contact_map, &grid, Boundary::Free, Connectivity::Four)
-                    .map_err(failed)?;
+            let patches = Patches::new(
+                &solution.fields.contact_map,
+                &grid,
+                Boundary::Free,
+                Connectivity::Four,
+            )
+            .map_err(failed)?;
             let areas = patches.patches().iter();
             let areas = areas.map(|patch| patch.perimeter.corrected_area(patch.nodes, &grid));
-            points.push(Point::new(&solution.state, areas.sum(), false));
+            points.push(Point::new(&solution.contact, areas.sum(), false));
         }
         eprintln!(
             "  {}, seed {seed}: path to {:.1} % contact in {seconds:.0} s, {} fixed loads to {:.1} % in {:.0} s",
@@ -320,5 +324,5 @@ pub(crate) fn punch_stiffness(nodes: usize) -> Result<f64, asperity::Error> {
     let heights = HeightMap::new(DMatrix::zeros(nodes, nodes))?;
     let kernel = Boussinesq::new(grid, E_STAR)?;
     let solution = FixedLoadSolver::new(&heights, &kernel)?.solve(NOMINAL_AREA * E_STAR)?;
-    Ok(known(solution.state.contact_stiffness) * SQ / (NOMINAL_AREA * E_STAR))
+    Ok(known(solution.contact.contact_stiffness) * SQ / (NOMINAL_AREA * E_STAR))
 }

@@ -17,8 +17,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use asperity::io::write_npy;
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::Failure;
 use asperity_studies::page::Section;
+use asperity_studies::study;
 use clap::Parser;
 
 /// The same problems by other programs.
@@ -35,13 +36,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -49,13 +44,8 @@ fn run(options: &Options) -> Result<(), Failure> {
         return write(directory);
     }
     let text = report::text(&table::read()?, &table::waves()?);
-    println!("{text}");
-    let mut outcome = Outcome::default();
-    if let Some(page) = &options.report {
-        let section = Section { study: "peers", text: &text, pictures: &[] };
-        outcome.written(section.publish(page));
-    }
-    outcome.finish()
+    let section = Section { study: "peers", text: &text, pictures: &[] };
+    section.show(options.report.as_deref())
 }
 
 /// Surfaces and pressures as NumPy's files, and everything else as `ours.csv`.
@@ -85,8 +75,9 @@ fn write(directory: &Path) -> Result<(), Failure> {
         write_npy(directory.join(&heights), rough.heights.matrix()).map_err(unwritten)?;
         for (number, solved) in ours::solve(rough).map_err(failed)?.iter().enumerate() {
             let pressure = format!("pressure{place}_{number}.npy");
-            write_npy(directory.join(&pressure), &solved.solution.pressure).map_err(unwritten)?;
-            let state = &solved.solution.state;
+            write_npy(directory.join(&pressure), &solved.solution.fields.pressure)
+                .map_err(unwritten)?;
+            let state = &solved.solution.contact;
             let stiffness = state.interfacial_stiffness.unwrap_or(f64::NAN);
             let (lx, ly) = rough.grid.sides();
             let numbers = [lx, ly, solved.mean_pressure].map(|x| x.to_string());

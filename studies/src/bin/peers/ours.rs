@@ -32,7 +32,7 @@ pub(crate) fn solve(rough: &Rough) -> Result<Vec<Solved>, Error> {
         for load in LOADS {
             let mean_pressure = load * gradient;
             let solution = solver.solve(mean_pressure * rough.grid.nominal_area())?;
-            let pressed = solution.pressure.iter().filter(|p| **p > 0.0);
+            let pressed = solution.fields.pressure.iter().filter(|p| **p > 0.0);
             all.push(Solved { half_space: name, mean_pressure, nodes: pressed.count(), solution });
         }
     }

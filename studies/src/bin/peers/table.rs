@@ -57,7 +57,7 @@ pub(crate) fn read() -> Result<Vec<Row>, Failure> {
     for rough in surfaces::all().map_err(failed)? {
         let rms_height = rough.heights.rms_height();
         for solved in ours::solve(&rough).map_err(failed)? {
-            let state = &solved.solution.state;
+            let state = &solved.solution.contact;
             let stiffness = state.interfacial_stiffness.unwrap_or(f64::NAN);
             let of = lines.iter().filter(|line| {
                 line.4 == rough.name

@@ -24,6 +24,7 @@ use std::process::ExitCode;
 use asperity_cli::half_space::Periodic;
 use asperity_cli::outcome::Failure;
 use asperity_studies::findings::{Findings, Picture, Places};
+use asperity_studies::study;
 use clap::Parser;
 
 /// Rough contact on a periodic half-space against theory, and a wave against its closed form.
@@ -55,13 +56,7 @@ pub(crate) struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {

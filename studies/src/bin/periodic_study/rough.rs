@@ -85,7 +85,7 @@ impl Study {
             // On the unit square, with E* = 1, loads are mean pressures over E*.
             for solution in solver.sweep(pressures.map(ContactTarget::Load)) {
                 let solution = solution.map_err(failed)?;
-                let (state, map) = (solution.state, &solution.contact_map);
+                let (state, map) = (solution.contact, &solution.fields.contact_map);
                 let effort = solution.effort;
                 convolutions += effort.convolutions as f64 + effort.coarse_convolutions;
                 states.push(State {

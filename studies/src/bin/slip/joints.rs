@@ -32,11 +32,11 @@ impl Pressed {
         let grid = Grid::square(SIDE, SIDE as f64)?;
         let kernel = Boussinesq::new(grid, 1.0)?;
         let mut path = LoadingSolver::builder(&heights, &kernel).max_nodes(nodes + 1).build()?;
-        let history: History = path.by_ref().collect::<Result<_, _>>()?;
+        let history = path.run()?;
         let at = |step: usize| history.states().get(step).map_or(0.0, |state| state.contact.load);
         let load = 0.5 * (at(nodes - 1) + at(nodes));
         let state = history.at(asperity::ContactTarget::Load(load))?;
-        let pressure = path.pressure_at(&state)?;
+        let pressure = path.fields_at(&state)?.pressure;
         let mut order = path.contact_order();
         order.truncate(state.contact.contact_nodes);
         let gap = path.problem().initial_gap().to_vec();

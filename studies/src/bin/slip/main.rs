@@ -18,8 +18,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use asperity::Error;
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::Failure;
 use asperity_studies::page::Section;
+use asperity_studies::study;
 use clap::Parser;
 
 /// Partial slip against closed forms and an incremental solution.
@@ -36,13 +37,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.report();
-            ExitCode::FAILURE
-        }
-    }
+    study::main(run)
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -53,11 +48,6 @@ fn run(options: &Options) -> Result<(), Failure> {
     uncoupled::write(options.nodes, &mut text)?;
     coupled::write(options.nodes, &mut text)?;
     costs::write(&mut text).map_err(failed)?;
-    println!("{text}");
-    let mut outcome = Outcome::default();
-    if let Some(page) = &options.report {
-        let section = Section { study: "slip", text: &text, pictures: &[] };
-        outcome.written(section.publish(page));
-    }
-    outcome.finish()
+    let section = Section { study: "slip", text: &text, pictures: &[] };
+    section.show(options.report.as_deref())
 }

@@ -34,7 +34,7 @@ pub(crate) fn compare(
         let solution = solver.solve(load)?;
         let mut expected = vec![false; grid.nodes()];
         order[..count].iter().for_each(|&node| expected[node] = true);
-        let different = expected.iter().zip(&solution.contact_map);
+        let different = expected.iter().zip(&solution.fields.contact_map);
         let different = different.filter(|(a, b)| a != b).count();
         sets += usize::from(different > 0);
         // The exact stiffness of the path's contact.
@@ -43,7 +43,7 @@ pub(crate) fn compare(
         let approach = state.approach;
         ConjugateGradient::new().solve(&problem, &contact, count, approach, &mut exact)?;
         let stiffness = grid.cell_area() * exact.rate.iter().sum::<f64>();
-        let found = solution.state.contact_stiffness.unwrap_or(f64::NAN);
+        let found = solution.contact.contact_stiffness.unwrap_or(f64::NAN);
         let error = (stiffness / found - 1.0).abs();
         let between = (state.contact_stiffness / found - 1.0).abs();
         worst = worst.max(error);

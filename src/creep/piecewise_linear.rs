@@ -8,11 +8,11 @@ use crate::Error;
 /// leaves no trace. Before the first corner the quantity is 0, so that a first corner at another value is a jump too.
 ///
 /// ```
-/// use asperity::creep::Corners;
+/// use asperity::creep::PiecewiseLinear;
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// // 100 N within half a second, held for an hour, half of it taken away at once.
-/// let load = Corners::ramp(100.0, 0.5)?.hold(3600.0)?.jump(50.0)?;
+/// let load = PiecewiseLinear::ramp(100.0, 0.5)?.hold(3600.0)?.jump(50.0)?;
 /// assert_eq!(load.value_at(0.25), 50.0);
 /// assert_eq!(load.value_at(1000.0), 100.0);
 /// assert_eq!(load.value_at(4000.0), 50.0);
@@ -20,11 +20,11 @@ use crate::Error;
 /// # }
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Corners {
+pub struct PiecewiseLinear {
     corners: Vec<(f64, f64)>,
 }
 
-impl Corners {
+impl PiecewiseLinear {
     /// From corners (time, value).
     ///
     /// # Errors
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn values_are_linear_between_corners() -> Result<(), Error> {
-        let x = Corners::new([(1.0, 2.0), (3.0, 6.0), (3.0, 1.0), (4.0, 1.0)])?;
+        let x = PiecewiseLinear::new([(1.0, 2.0), (3.0, 6.0), (3.0, 1.0), (4.0, 1.0)])?;
         for (time, value) in
             [(0.9, 0.0), (1.0, 2.0), (2.0, 4.0), (3.0, 1.0), (3.5, 1.0), (4.0, 1.0), (9.0, 1.0)]
         {
@@ -182,16 +182,22 @@ mod tests {
 
     #[test]
     fn what_happens_at_once_is_one_jump() -> Result<(), Error> {
-        let x =
-            Corners::new([(0.0, 5.0), (0.0, 3.0), (1.0, 4.0), (1.0, 0.0), (1.0, 9.0), (1.0, 2.0)])?;
+        let x = PiecewiseLinear::new([
+            (0.0, 5.0),
+            (0.0, 3.0),
+            (1.0, 4.0),
+            (1.0, 0.0),
+            (1.0, 9.0),
+            (1.0, 2.0),
+        ])?;
         assert_eq!(x.corners(), [(0.0, 3.0), (1.0, 4.0), (1.0, 2.0)]);
-        assert_eq!(Corners::step(7.0)?.corners(), [(0.0, 7.0)]);
+        assert_eq!(PiecewiseLinear::step(7.0)?.corners(), [(0.0, 7.0)]);
         Ok(())
     }
 
     #[test]
     fn cycles_come_back_to_their_mean() -> Result<(), Error> {
-        let x = Corners::step(5.0)?.cycles(2.0, 4.0, 3, 4)?;
+        let x = PiecewiseLinear::step(5.0)?.cycles(2.0, 4.0, 3, 4)?;
         let expected = [(1.0, 7.0), (2.0, 5.0), (3.0, 3.0), (4.0, 5.0)];
         assert_eq!(x.corners().len(), 13);
         for (found, expected) in x.corners()[1..5].iter().zip(expected) {
@@ -215,10 +221,10 @@ mod tests {
             vec![(0.0, -1e308), (1.0, 1e308)],
             vec![(0.0, 0.0), (1e-320, 1.0)],
         ] {
-            let refused = Corners::new(corners.clone());
+            let refused = PiecewiseLinear::new(corners.clone());
             assert!(matches!(refused, Err(Error::OutOfRange { .. })), "{corners:?}");
         }
-        assert!(Corners::ramp(1.0, -1.0).is_err());
-        assert!(Corners::step(1.0).and_then(|x| x.cycles(0.1, 1.0, 1, 3)).is_err());
+        assert!(PiecewiseLinear::ramp(1.0, -1.0).is_err());
+        assert!(PiecewiseLinear::step(1.0).and_then(|x| x.cycles(0.1, 1.0, 1, 3)).is_err());
     }
 }

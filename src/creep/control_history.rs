@@ -1,6 +1,6 @@
 //! Histories for the bed: of load or of approach, and the times at which to step through them.
 
-use super::corners::Corners;
+use super::piecewise_linear::PiecewiseLinear;
 use super::prony::Prony;
 use super::state::CreepState;
 use super::viscoelastic_bed::{Control, ViscoelasticBed};
@@ -8,17 +8,17 @@ use crate::Error;
 
 /// What is given over time.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Course {
+pub enum ControlHistory {
     /// The load \[N\].
-    Load(Corners),
+    Load(PiecewiseLinear),
     /// The approach \[m\].
-    Approach(Corners),
+    Approach(PiecewiseLinear),
 }
 
-impl Course {
+impl ControlHistory {
     /// Its corners.
     #[must_use]
-    pub fn corners(&self) -> &Corners {
+    pub fn corners(&self) -> &PiecewiseLinear {
         match self {
             Self::Load(corners) | Self::Approach(corners) => corners,
         }
@@ -62,7 +62,12 @@ impl Steps {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for steps that are not positive, a growth below 1, and an end that is not finite.
-    pub fn times(&self, prony: &Prony, corners: &Corners, end: f64) -> Result<Vec<f64>, Error> {
+    pub fn times(
+        &self,
+        prony: &Prony,
+        corners: &PiecewiseLinear,
+        end: f64,
+    ) -> Result<Vec<f64>, Error> {
         Error::require_positive("first step over the shortest relaxation time", self.first)?;
         let is_so = self.growth >= 1.0 && self.growth.is_finite();
         Error::require("growth of steps", self.growth, is_so, "at least 1 and finite")?;
@@ -104,7 +109,7 @@ impl Steps {
 }
 
 impl ViscoelasticBed<'_> {
-    /// Follows a history, and returns the states at some times, ascending, each just after a jump there. Corners on the way are steps of
+    /// Follows a history, and returns the states at some times, ascending, each just after a jump there. PiecewiseLinear on the way are steps of
     /// their own; else the steps are from time to time.
     ///
     /// A bed that has made no step yet begins with the history. Another one goes on with it from its present time, at which
@@ -113,7 +118,11 @@ impl ViscoelasticBed<'_> {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for times that fall, and those of [`step`](Self::step).
-    pub fn follow(&mut self, course: &Course, times: &[f64]) -> Result<Vec<CreepState>, Error> {
+    pub fn follow(
+        &mut self,
+        course: &ControlHistory,
+        times: &[f64],
+    ) -> Result<Vec<CreepState>, Error> {
         let corners = course.corners().corners();
         let (Some(&(begin, _)), Some(&first)) = (corners.first(), times.first()) else {
             return Ok(Vec::new());

@@ -10,12 +10,12 @@ use std::sync::{Arc, Mutex};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::complementary::{complementary, from_first_touch};
+use super::test_complementary::{complementary, from_first_touch};
 use crate::contact::ContactSequence;
 use crate::kernel::KernelTable;
-use crate::loading::LoadingEnd;
+use crate::loading::phase::Phase;
+use crate::loading::{LoadingEnd, LoadingPath};
 use crate::surface::HeightMap;
-use crate::updater::altered::Altered;
 use crate::updater::{
     Behind, Beside, ConjugateGradient, Iterations, Proposal, Schur, Solution, Solved,
 };
@@ -308,8 +308,6 @@ struct Small {
     misleads: bool,
 }
 
-type Path = LoadingSolver<Altered>;
-
 impl Small {
     fn new(
         name: &'static str,
@@ -377,19 +375,12 @@ impl Small {
     }
 
     /// The path with a fault.
-    fn path(&self, strike: &Arc<Strike>) -> Result<Path, Error> {
+    fn path(&self, strike: &Arc<Strike>) -> Result<LoadingPath, Error> {
         let (strike, misleads) = (Arc::clone(strike), self.misleads);
-        let iterations = move || -> Box<dyn Iterations> {
-            let (inner, strike) = (ConjugateGradient::new(), Arc::clone(&strike));
-            Box::new(Failing { inner, misleads, strike })
-        };
-        let builder = LoadingSolver::builder(&self.heights, &self.kernel)
-            .window_size(self.window)
-            .updater(Altered::iterating(iterations));
-        match self.hardness {
-            Some(hardness) => builder.hardness(hardness).build(),
-            None => builder.build(),
-        }
+        let iterations = Failing { inner: ConjugateGradient::new(), misleads, strike };
+        let builder = LoadingSolver::builder(&self.heights, &self.kernel).window_size(self.window);
+        let builder = self.hardness.into_iter().fold(builder, |all, value| all.hardness(value));
+        builder.settings.build(Phase::Iterations(Box::new(iterations)))
     }
 
     /// All states of the path without a fault, and how many calls they take.
@@ -458,7 +449,7 @@ impl Small {
 
     /// After its end a path yields nothing and does not go on; what it has yielded it still knows. Returns for how many states
     /// it answered.
-    fn is_over(&self, path: &mut Path, states: &[LoadingState], context: &str) -> usize {
+    fn is_over(&self, path: &mut LoadingPath, states: &[LoadingState], context: &str) -> usize {
         assert_eq!(path.end(), Some(LoadingEnd::Failed), "{context}");
         for _ in 0..3 {
             assert!(path.next().is_none(), "{context}");
@@ -596,7 +587,7 @@ fn questions_that_fail_do_not_disturb_the_path() -> Result<(), Error> {
                     let earlier = states[states.len() / 2];
                     strike.at.store(strike.calls.load(Relaxed) + ahead, Relaxed);
                     let asked = catch_unwind(AssertUnwindSafe(|| {
-                        path.pressure()?;
+                        path.fields()?;
                         path.pressure_at(&earlier)?;
                         path.certificate()
                     }));

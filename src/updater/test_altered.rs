@@ -3,16 +3,14 @@
 use std::sync::Arc;
 
 use super::{
-    Behind, Beside, Dense, Iterations, LinearUpdater, Method, Proposal as BothProposal, Schur,
-    Solution, Solved, WindowFactor,
+    Behind, Beside, Dense, Iterations, LinearUpdater, Proposal as BothProposal, Schur, Solution,
+    Solved, WindowFactor,
 };
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
 /// What is done to an answer on its way.
 type Alteration<T> = Arc<dyn Fn(&mut T) + Send + Sync>;
-/// Makes the iterations that a path takes in the place of an updater.
-type Maker = Arc<dyn Fn(&Altered) -> Box<dyn Iterations> + Send + Sync>;
 /// A Schur complement, and the displacements of its nodes.
 pub(crate) type Proposal = (Schur, Vec<[f64; 2]>);
 
@@ -22,8 +20,6 @@ pub(crate) struct Altered {
     proposal: Alteration<Proposal>,
     solution: Alteration<Solution>,
     tolerance: f64,
-    /// The iterations for which a path takes it.
-    iterations: Option<Maker>,
     /// Bytes that it asks for before the first node is in contact.
     room: usize,
     /// Displacements of all nodes under the last solution, and under its rate.
@@ -39,7 +35,6 @@ impl Altered {
             proposal: Arc::new(|_| {}),
             solution: Arc::new(|_| {}),
             tolerance,
-            iterations: Some(Arc::new(|own| Box::new(own.clone()))),
             room: 0,
             displacement: [Vec::new(), Vec::new()],
             solution_now: Solution::default(),
@@ -67,19 +62,12 @@ impl Altered {
 
     /// An updater with other solutions.
     pub(crate) fn solutions(solution: impl Fn(&mut Solution) + Send + Sync + 'static) -> Self {
-        Self { solution: Arc::new(solution), iterations: None, ..Self::inexact(0.0) }
+        Self { solution: Arc::new(solution), ..Self::inexact(0.0) }
     }
 
     /// An updater with other Schur complements.
     pub(crate) fn complements(proposal: impl Fn(&mut Proposal) + Send + Sync + 'static) -> Self {
-        Self { iterations: None, ..Self::estimates(0.0, proposal) }
-    }
-
-    /// An updater in whose place a path takes these iterations.
-    pub(crate) fn iterating(
-        iterations: impl Fn() -> Box<dyn Iterations> + Send + Sync + 'static,
-    ) -> Self {
-        Self { iterations: Some(Arc::new(move |_| iterations())), ..Self::inexact(0.0) }
+        Self::estimates(0.0, proposal)
     }
 
     /// An updater that asks for room.
@@ -272,12 +260,5 @@ impl LinearUpdater for Altered {
             return Ok(());
         }
         Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 })
-    }
-
-    fn method(&self) -> Method {
-        match &self.iterations {
-            Some(iterations) => Method::Iterations(iterations(self)),
-            None => Method::Factor,
-        }
     }
 }
