@@ -17,7 +17,7 @@
 //!     4.0                       2.4           11.43        0.82       5
 //! ```
 
-use asperity::adhesion::{Adhesion, AdhesiveEvent, AdhesivePath, Branch};
+use asperity::adhesion::{Adhesion, AdhesiveEvent, AdhesivePath};
 use asperity::surface::Amplitude;
 use asperity::{Boussinesq, ContactTarget, Error, Grid, SelfAffine};
 
@@ -31,10 +31,10 @@ fn main() -> Result<(), Error> {
             SelfAffine::new(0.8, side / 2.0, side / 4.0, Amplitude::RmsHeight(rms_height), 1)?;
         let builder = AdhesivePath::builder(&surface, &half_space, Adhesion::work(0.05));
         let mut path = builder.until(ContactTarget::Load(load)).build()?;
-        let mut loop_of_both: Branch = path.by_ref().collect::<Result<_, _>>()?;
+        let mut loop_of_both = path.run()?;
         let pressed = path.state().map_or(0.0, |state| state.contact.contact_area_fraction);
         path.unload()?;
-        let unloading: Branch = path.by_ref().collect::<Result<_, _>>()?;
+        let unloading = path.run()?;
         loop_of_both.extend(unloading.states().iter().copied());
         let states = loop_of_both.states().iter();
         let jumps = states.filter(|state| state.event == AdhesiveEvent::JumpEnd).count();

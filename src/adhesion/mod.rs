@@ -7,7 +7,7 @@
 //! the greatest gaps, unloading that of the least.
 //!
 //! ```
-//! use asperity::adhesion::{Adhesion, AdhesivePath, Branch};
+//! use asperity::adhesion::{Adhesion, AdhesivePath};
 //! use asperity::surface::{Amplitude, SelfAffine};
 //! use asperity::{Boussinesq, ContactTarget, Grid};
 //!
@@ -16,9 +16,9 @@
 //! let surface = SelfAffine::new(0.8, 5e-7, 2.5e-7, Amplitude::RmsHeight(1e-8), 1)?;
 //! let builder = AdhesivePath::builder(&surface, &half_space, Adhesion::work(0.02)); // 20 mJ/m²
 //! let mut path = builder.until(ContactTarget::Load(1e-6)).build()?;
-//! let loading: Branch = path.by_ref().collect::<Result<_, _>>()?;
+//! let loading = path.run()?;
 //! path.unload()?; // from there; `load_to` and `unload_to` turn around anywhere
-//! let unloading: Branch = path.by_ref().collect::<Result<_, _>>()?;
+//! let unloading = path.run()?;
 //! assert!(unloading.pull_off() >= loading.pull_off());
 //! # Ok(())
 //! # }

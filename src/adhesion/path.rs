@@ -7,6 +7,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::board::Change;
+use super::branch::Branch;
 use super::front::{Body, Field, Front};
 use super::law::CohesiveLaw;
 use super::moment::{Moment, Totals};
@@ -37,7 +38,7 @@ pub enum BranchEnd {
 /// The path of a rigid rough surface that sticks to an elastic half-space: the branch of loading, and those of
 /// unloading and loading again from wherever it is turned around.
 ///
-/// An iterator of [`AdhesiveState`] as [`LoadingSolver`](crate::LoadingSolver) is one of its states; see [the
+/// An iterator of [`AdhesiveState`] as [`LoadingPath`](crate::LoadingPath) is one of its states; see [the
 /// module](super).
 #[derive(Debug)]
 pub struct AdhesivePath {
@@ -136,6 +137,16 @@ impl AdhesivePath {
     pub fn load_to(&mut self, target: ContactTarget) -> Result<(), Error> {
         let targets = Targets::of(&[target], &self.grid())?;
         self.turn(Direction::Loading, targets)
+    }
+
+    /// All states to come, up to the end of the branch.
+    ///
+    /// # Errors
+    ///
+    /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate
+    /// to keep them.
+    pub fn run(&mut self) -> Result<Branch, Error> {
+        self.by_ref().collect()
     }
 
     fn turn(&mut self, direction: Direction, targets: Targets) -> Result<(), Error> {

@@ -9,6 +9,7 @@ use crate::{Error, Grid};
 /// Where a branch is to end, the first of several.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Targets {
+    /// None of them a mean pressure, which is a load.
     targets: Vec<ContactTarget>,
     /// Nodes that fit into the least fraction of the area that was asked for.
     nodes: Option<usize>,
@@ -35,22 +36,29 @@ impl Targets {
     /// [`Error::OutOfRange`] for what is not finite, and for a fraction that is none.
     pub(super) fn of(targets: &[ContactTarget], grid: &Grid) -> Result<Self, Error> {
         let mut nodes: Option<usize> = None;
-        for target in targets {
-            let (quantity, value) = match *target {
+        let mut own = Vec::with_capacity(targets.len());
+        for &target in targets {
+            let (quantity, value) = match target {
                 ContactTarget::AreaFraction(fraction) => {
                     let fit = grid.nodes_in(fraction)?;
                     nodes = Some(nodes.map_or(fit, |nodes| nodes.min(fit)));
+                    own.push(target);
                     continue;
                 }
                 ContactTarget::Load(load) => ("load at which a branch ends", load),
+                ContactTarget::MeanPressure(p) => ("mean pressure at which a branch ends", p),
                 ContactTarget::Approach(approach) => ("approach at which a branch ends", approach),
                 ContactTarget::MeanGap(gap) => ("mean gap at which a branch ends", gap),
             };
             if !value.is_finite() {
                 return Err(Error::OutOfRange { quantity, value, expected: "finite" });
             }
+            own.push(match target {
+                ContactTarget::MeanPressure(p) => ContactTarget::Load(p * grid.nominal_area()),
+                target => target,
+            });
         }
-        Ok(Self { targets: targets.to_vec(), nodes })
+        Ok(Self { targets: own, nodes })
     }
 
     /// `Ok` if all lie ahead of a state.
@@ -65,6 +73,7 @@ impl Targets {
                 ContactTarget::Load(load) => ("load", load, state.load, sign),
                 ContactTarget::Approach(approach) => ("approach", approach, state.approach, sign),
                 ContactTarget::MeanGap(gap) => ("mean gap", gap, state.mean_gap, -sign),
+                ContactTarget::MeanPressure(_) => continue,
                 ContactTarget::AreaFraction(fraction) => {
                     ("contact area fraction", fraction, state.contact_area_fraction, sign)
                 }
@@ -94,7 +103,9 @@ impl Targets {
                     1.0,
                 ),
                 ContactTarget::MeanGap(to) => (sign * (gap - to), -sign * gap_rate, 1.0),
-                ContactTarget::AreaFraction(_) => return f64::INFINITY,
+                ContactTarget::AreaFraction(_) | ContactTarget::MeanPressure(_) => {
+                    return f64::INFINITY;
+                }
             };
             if left == 0.0 {
                 0.0
@@ -121,7 +132,7 @@ impl Targets {
     /// unloading has come down to an area.
     pub(super) fn is_past(&self, state: &ContactState, direction: Direction) -> bool {
         let is_beyond = |target: &ContactTarget| match *target {
-            ContactTarget::Load(_) => false,
+            ContactTarget::Load(_) | ContactTarget::MeanPressure(_) => false,
             ContactTarget::Approach(to) => direction.sign() * (state.approach - to) > 0.0,
             ContactTarget::MeanGap(gap) => direction.sign() * (gap - state.mean_gap) > 0.0,
             ContactTarget::AreaFraction(_) => {

@@ -157,6 +157,13 @@ fn what_is_refused() {
         );
     }
     assert!(path.load_to(ContactTarget::Load(f64::NAN)).is_err());
+    // A mean pressure is a load.
+    let mut path = AdhesivePath::builder(&surface, &kernel, law)
+        .until(ContactTarget::MeanPressure(1e-3))
+        .build()
+        .unwrap();
+    let last = path.run().unwrap().states().last().copied().unwrap();
+    assert_eq!(last.contact.load, 1e-3 * kernel.grid().nominal_area());
     // A budget that the factor outgrows ends the path with what fits, and nothing goes on behind it.
     let fixed = 24 * 8 * 400;
     let builder = AdhesivePath::builder(&surface, &kernel, law).memory_budget(fixed + 1_200_000);
