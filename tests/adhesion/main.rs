@@ -4,5 +4,6 @@
 mod closed_forms;
 mod equilibria;
 mod reference_branches;
+mod special;
 mod targets;
 mod walks;
