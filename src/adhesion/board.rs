@@ -6,6 +6,7 @@ use faer::{Accum, Mat, MatMut, Par, Side, unzip, zip};
 
 use super::law::CohesiveLaw;
 use super::state::NodeState;
+use crate::parallel::vectorized;
 use crate::updater::Schur;
 
 /// Pivots below this part of a compliance count as unstable.
@@ -132,24 +133,26 @@ impl Board {
 
     /// Exchanges what is given of a node and what answers.
     fn pivot(&mut self, place: usize) {
-        let (size, height) = (self.size(), self.size() + 2);
+        let height = self.size() + 2;
         let inverse = self.entry(place, place).recip();
         let mut own = self.matrix[height * place..height * (place + 1)].to_vec();
         own[place] = 0.0;
-        for (j, column) in self.matrix.chunks_exact_mut(height).enumerate() {
-            if j == place {
-                continue;
-            }
-            let factor = column[place] * inverse;
-            if factor != 0.0 {
-                column.iter_mut().zip(&own).for_each(|(value, own)| *value -= factor * own);
-                column[place] = -factor;
-            }
-        }
+        let matrix = &mut self.matrix;
+        vectorized(
+            #[inline(always)]
+            || {
+                for (j, column) in matrix.chunks_exact_mut(height).enumerate() {
+                    let factor = column[place] * inverse;
+                    if j != place && factor != 0.0 {
+                        column.iter_mut().zip(&own).for_each(|(value, own)| *value -= factor * own);
+                        column[place] = -factor;
+                    }
+                }
+            },
+        );
         own.iter_mut().for_each(|value| *value *= inverse);
         own[place] = inverse;
         self.matrix[height * place..height * (place + 1)].copy_from_slice(&own);
-        debug_assert!(place < size);
     }
 
     /// Puts all soft nodes, which come first, on the slope of the law, as one pivot: with A = T_ss − 1/k

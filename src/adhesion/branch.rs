@@ -5,23 +5,23 @@ use super::state::{AdhesiveEvent, AdhesiveState};
 /// The states of one branch, or of several that follow each other: what an [`AdhesivePath`](super::AdhesivePath) is
 /// collected into.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Branch {
+pub struct AdhesiveBranch {
     states: Vec<AdhesiveState>,
 }
 
-impl FromIterator<AdhesiveState> for Branch {
+impl FromIterator<AdhesiveState> for AdhesiveBranch {
     fn from_iter<I: IntoIterator<Item = AdhesiveState>>(states: I) -> Self {
         Self { states: states.into_iter().collect() }
     }
 }
 
-impl Extend<AdhesiveState> for Branch {
+impl Extend<AdhesiveState> for AdhesiveBranch {
     fn extend<I: IntoIterator<Item = AdhesiveState>>(&mut self, states: I) {
         self.states.extend(states);
     }
 }
 
-impl Branch {
+impl AdhesiveBranch {
     /// The states, one for each event.
     #[must_use]
     pub fn states(&self) -> &[AdhesiveState] {
@@ -106,7 +106,7 @@ mod tests {
                 dissipated,
                 work: 0.0,
             });
-        let branch: Branch = states.collect();
+        let branch: AdhesiveBranch = states.collect();
         assert_eq!((branch.pull_off(), branch.dissipated()), (5.0, 0.25));
         let loads = [1.0, 2.0, 3.0, 4.0, 5.0].map(|approach| branch.load_at(approach));
         assert_eq!(loads, [0.0, -1.0, -2.0, -2.0, 1.0].map(Some));
@@ -115,7 +115,7 @@ mod tests {
         // Within the jump there is no state, and it comes later.
         assert_eq!(branch.approach_at(-3.5), Some(3.5));
         assert_eq!((branch.load_at(0.5), branch.approach_at(2.0)), (None, None));
-        assert_eq!(Branch::default().pull_off(), 0.0);
+        assert_eq!(AdhesiveBranch::default().pull_off(), 0.0);
         Ok(())
     }
 }

@@ -34,8 +34,8 @@
 //!   refused.
 //! * *Energies*: `∫ W dδ` is the sum of elastic, adhesive and dissipated energy. What a jump costs has a closed form.
 //! * *Pull-off*: the branch under a dead load is that of the approach where the load is at its greatest so far on
-//!   loading, or its least on unloading. So [`Branch::pull_off`] holds for machines of any compliance. What a loop
-//!   costs depends on the machine.
+//!   loading, or its least on unloading. So [`AdhesiveBranch::pull_off`] holds for machines of any compliance. What a
+//!   loop costs depends on the machine.
 //!
 //! # What the mesh has to resolve
 //!
@@ -65,10 +65,10 @@ mod state;
 mod target;
 mod window;
 
-pub use branch::Branch;
+pub use branch::AdhesiveBranch;
 pub use builder::AdhesiveBuilder;
 pub use law::{Adhesion, CohesiveLaw};
 #[doc(hidden)] // for the studies of this repository
 pub use path::AdhesiveTimings;
-pub use path::{AdhesiveFields, AdhesivePath, BranchEnd};
+pub use path::{AdhesiveEnd, AdhesiveFields, AdhesivePath};
 pub use state::{AdhesiveEvent, AdhesiveState, Direction, NodeState};

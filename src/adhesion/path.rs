@@ -7,7 +7,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::board::Change;
-use super::branch::Branch;
+use super::branch::AdhesiveBranch;
 use super::front::{Body, Field, Front};
 use super::law::CohesiveLaw;
 use super::moment::{Moment, Totals};
@@ -26,7 +26,7 @@ const SOFT_FOR_ONE: usize = 4;
 /// Why a branch has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum BranchEnd {
+pub enum AdhesiveEnd {
     /// The state that was asked for; the last state is there.
     Target,
     /// All nodes are in contact, or out of range.
@@ -54,7 +54,7 @@ pub struct AdhesivePath {
     jump: Option<usize>,
     queue: VecDeque<AdhesiveState>,
     last: Option<AdhesiveState>,
-    end: Option<BranchEnd>,
+    end: Option<AdhesiveEnd>,
     /// All that has happened to nodes, and for each state how much had and its approach in the gauge of the kernel.
     log: Vec<Change>,
     marks: Vec<(usize, f64)>,
@@ -145,12 +145,12 @@ impl AdhesivePath {
     ///
     /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate
     /// to keep them.
-    pub fn run(&mut self) -> Result<Branch, Error> {
+    pub fn run(&mut self) -> Result<AdhesiveBranch, Error> {
         self.by_ref().collect()
     }
 
     fn turn(&mut self, direction: Direction, targets: Targets) -> Result<(), Error> {
-        if self.end == Some(BranchEnd::Failed) {
+        if self.end == Some(AdhesiveEnd::Failed) {
             return Err(Error::CannotContinue { steps: self.last.map_or(0, |state| state.step) });
         }
         if let Some(state) = &self.last {
@@ -244,7 +244,7 @@ impl AdhesivePath {
 
     /// Why the branch has ended; `None` while there is more to come.
     #[must_use]
-    pub fn end(&self) -> Option<BranchEnd> {
+    pub fn end(&self) -> Option<AdhesiveEnd> {
         self.end
     }
 
@@ -317,7 +317,7 @@ impl AdhesivePath {
                 && self.targets.is_past(&state.contact, self.direction)
         };
         if self.queue.is_empty() && self.last.as_ref().is_some_and(is_jumped) {
-            self.end = Some(BranchEnd::Target);
+            self.end = Some(AdhesiveEnd::Target);
         }
         Ok(self.last)
     }
@@ -351,7 +351,7 @@ impl AdhesivePath {
         let Some(Played { front, field, moments, changes, totals, jump, is_at_limit, taken_back }) =
             found
         else {
-            self.end = Some(BranchEnd::NoMoreEvents);
+            self.end = Some(AdhesiveEnd::NoMoreEvents);
             return Ok(());
         };
         self.timings.windows += 1;
@@ -367,7 +367,7 @@ impl AdhesivePath {
         self.totals = totals;
         self.jump = self.jump.or(jump);
         if is_at_limit {
-            self.end = Some(BranchEnd::Target);
+            self.end = Some(AdhesiveEnd::Target);
         }
         Ok(())
     }
@@ -387,12 +387,12 @@ impl Iterator for AdhesivePath {
     type Item = Result<AdhesiveState, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.end == Some(BranchEnd::Failed) {
+        if self.end == Some(AdhesiveEnd::Failed) {
             return None;
         }
         let item = self.advance();
         if item.is_err() {
-            self.end = Some(BranchEnd::Failed);
+            self.end = Some(AdhesiveEnd::Failed);
         }
         item.transpose()
     }

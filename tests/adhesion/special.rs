@@ -1,6 +1,6 @@
 //! A node alone by hand, flat and repeated surfaces, whose nodes have their events together, and other units.
 
-use asperity::adhesion::{Adhesion, AdhesiveEvent, AdhesivePath, Branch};
+use asperity::adhesion::{Adhesion, AdhesiveBranch, AdhesiveEvent, AdhesivePath};
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::{Boussinesq, ContactTarget, Grid, InfluenceKernel, PeriodicBoussinesq, Surface};
 use nalgebra::DMatrix;
@@ -21,7 +21,7 @@ fn both(
     kernel: &dyn InfluenceKernel,
     law: Adhesion,
     end: ContactTarget,
-) -> [Branch; 2] {
+) -> [AdhesiveBranch; 2] {
     let mut path = AdhesivePath::builder(surface, kernel, law).until(end).build().unwrap();
     let loading = path.run().unwrap();
     path.unload().unwrap();
@@ -38,7 +38,7 @@ fn one_node() {
     let stress = 2.0 * 0.01 / 0.1;
     assert!(law.on(&kernel).unwrap().resolution() < 1.0);
     let [loading, unloading] = both(&flat(1), &kernel, law, ContactTarget::Approach(0.03));
-    let events = |branch: &Branch| -> Vec<_> {
+    let events = |branch: &AdhesiveBranch| -> Vec<_> {
         let states = branch.states().iter();
         states.map(|s| (s.event, s.contact.approach, s.contact.load, s.dissipated)).collect()
     };
@@ -110,7 +110,7 @@ fn equal_tiles() {
     for (small, large) in small.iter().zip(&large) {
         assert!(small.states().iter().all(|state| state.event != AdhesiveEvent::JumpStart));
         assert!((large.pull_off() / small.pull_off() - 4.0).abs() < 1e-9);
-        let events = |branch: &Branch| {
+        let events = |branch: &AdhesiveBranch| {
             branch.states().iter().filter(|state| state.event != AdhesiveEvent::Limit).count()
         };
         assert_eq!(events(large), 4 * events(small));

@@ -1,7 +1,7 @@
 //! Ends of branches, reversals, and what is refused.
 
 use asperity::adhesion::{
-    Adhesion, AdhesiveEvent, AdhesivePath, AdhesiveState, BranchEnd, Direction,
+    Adhesion, AdhesiveEnd, AdhesiveEvent, AdhesivePath, AdhesiveState, Direction,
 };
 use asperity::surface::{Amplitude, SelfAffine};
 use asperity::{
@@ -49,7 +49,7 @@ fn branches_end_at_their_targets() {
         let last = states.last().unwrap();
         assert_eq!(
             (path.end(), last.event),
-            (Some(BranchEnd::Target), AdhesiveEvent::Limit),
+            (Some(AdhesiveEnd::Target), AdhesiveEvent::Limit),
             "{target:?}"
         );
         let (found, asked) = match target {
@@ -77,7 +77,7 @@ fn branches_end_at_their_targets() {
 fn areas_of_both_branches() {
     let mut path = path(Some(ContactTarget::AreaFraction(0.3)));
     let states = run(&mut path);
-    assert_eq!(path.end(), Some(BranchEnd::Target));
+    assert_eq!(path.end(), Some(AdhesiveEnd::Target));
     let last = states.last().unwrap();
     assert!(last.contact.contact_nodes >= 120, "{last:?}");
     assert!(last.contact.contact_nodes == 120 || last.event == AdhesiveEvent::JumpEnd);
@@ -170,7 +170,7 @@ fn what_is_refused() {
     let mut path = builder.build().unwrap();
     let error = path.by_ref().find_map(Result::err);
     assert!(matches!(error, Some(Error::MemoryBudget { .. })), "{error:?}");
-    assert_eq!(path.end(), Some(BranchEnd::Failed));
+    assert_eq!(path.end(), Some(AdhesiveEnd::Failed));
     assert!(path.next().is_none());
     assert!(matches!(path.unload(), Err(Error::CannotContinue { .. })));
 }
