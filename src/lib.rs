@@ -159,23 +159,3 @@ struct CratePage;
 #[cfg(all(doctest, feature = "io"))]
 #[doc = include_str!("../docs/from_file_to_contact.md")]
 struct FromFileToContact;
-
-/// The same of the page on metals.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/metals_that_yield.md")]
-struct MetalsThatYield;
-
-/// The same of the page on surfaces that stick.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/surfaces_that_stick.md")]
-struct SurfacesThatStick;
-
-/// The same of the page on joints.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/joints_that_slip.md")]
-struct JointsThatSlip;
-
-/// The same of the page on layers.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/coated_and_thin_bodies.md")]
-struct CoatedAndThinBodies;

@@ -39,7 +39,7 @@ pub(crate) struct PartialSlip {
 
 /// What a joint does under a tangential load: partial slip, stiffness, dissipation, by Coulomb friction.
 ///
-/// Exact for bodies alike, or of Poisson's ratio 1/2 against a rigid one, but for some per cent of the stiffness.
+/// For bodies alike, or of Poisson's ratio 1/2 against a rigid one, stiffnesses are right within some per cent.
 ///
 /// Parameters
 /// ----------

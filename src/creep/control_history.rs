@@ -109,7 +109,7 @@ impl Steps {
 }
 
 impl ViscoelasticBed<'_> {
-    /// Follows a history, and returns the states at some times, ascending, each just after a jump there. PiecewiseLinear on the way are steps of
+    /// Follows a history, and returns the states at some times, ascending, each just after a jump there. Corners on the way are steps of
     /// their own; else the steps are from time to time.
     ///
     /// A bed that has made no step yet begins with the history. Another one goes on with it from its present time, at which

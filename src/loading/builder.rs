@@ -43,6 +43,7 @@ pub(super) struct Settings<'a> {
     max_nodes: Option<usize>,
     targets: Vec<ContactTarget>,
     memory_budget: Option<usize>,
+    hand_over: Option<bool>,
     hardness: Limit<'a>,
 }
 
@@ -55,6 +56,7 @@ impl fmt::Debug for Settings<'_> {
             .field("max_nodes", &self.max_nodes)
             .field("targets", &self.targets)
             .field("memory_budget", &self.memory_budget)
+            .field("hand_over", &self.hand_over)
             .field("has_hardness", &!matches!(self.hardness, Limit::None))
             .finish_non_exhaustive()
     }
@@ -128,6 +130,7 @@ impl<'a> LoadingBuilder<'a> {
             max_nodes: None,
             targets: Vec::new(),
             memory_budget: None,
+            hand_over: None,
             hardness: Limit::None,
         };
         Self { settings, updater: Handover::new() }
@@ -138,6 +141,13 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// Another updater, with no node in contact.
     pub fn updater<V: LinearUpdater>(self, updater: V) -> LoadingBuilder<'a, V> {
         LoadingBuilder { settings: self.settings, updater }
+    }
+
+    /// Whether the updater is given up for [`ConjugateGradient`] once that is cheaper for the rest of the path, or where the updater does
+    /// not fit into the memory budget: see [`Handover`], for which it is so unless this says otherwise. Other updaters stay.
+    pub fn hand_over(mut self, may_end: bool) -> Self {
+        self.settings.hand_over = Some(may_end);
+        self
     }
 
     /// Which node touches next; exact by default.
@@ -234,7 +244,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// for itself, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that
     /// contact grows.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
-        let phase = Phase::new(self.updater);
+        let phase = Phase::new(self.updater, self.settings.hand_over);
         self.settings.build(phase).map(LoadingSolver::of)
     }
 

@@ -40,11 +40,11 @@
 //!   which contains the mean displacement under the load. Nodes that touch together as a window begins join in the order of
 //!   their indices at one approach, and are ties as far as the solutions there tell them apart: 10⁻⁸ of that
 //!   approach over the rate at which their gaps close.
-//! * *Certified* are the ends of windows, some fifty events apart: solutions of the contact problem, checked for
-//!   tension and overlap. The end of a window also shows how far its Schur complement was from exact. Where the nearest contact
-//!   does not say what a distant one does, as on a periodic strip of a few rows, windows become shorter, down to one event; a
-//!   window whose end, or a solution in it, contradicts what was expected is taken back.
-//! * *Estimated* is what lies between: [`LoadingState::approach_error`] says how far the approach of an event may be
+//! * *The ends of windows*, some fifty events apart, are certified: they are solutions of the contact problem, checked for
+//!   tension and overlap. The end of a window also shows how far its Schur complement was from exact. On a periodic strip of a
+//!   few rows, where distant contacts matter as much as near ones, windows become shorter, down to one event. A window whose
+//!   end, or a solution in it, contradicts what was expected is taken back.
+//! * *Between them* states are estimated: [`LoadingState::approach_error`] says how far the approach of an event may be
 //!   off; on a periodic half-space this is the approach of the mean planes, as it is reported. Of 196 608 errors
 //!   measured on 128 × 128 nodes none exceeds its estimate. On square cells loads are wrong by some 10⁻⁷ as a rule and by 10⁻⁵ at
 //!   worst (on uncorrelated heights 3·10⁻⁵), interfacial stiffnesses by 2·10⁻⁶ and 2·10⁻⁴, mean gaps by 10⁻⁶ of the

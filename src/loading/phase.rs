@@ -26,8 +26,9 @@ pub(super) enum Phase {
 }
 
 impl Phase {
-    /// Begins with an updater that has no node in contact: with iterations where it is one of these.
-    pub(super) fn new(updater: impl LinearUpdater) -> Self {
+    /// Begins with an updater that has no node in contact: with iterations where it is one of these. `hand_over` says whether it may end,
+    /// if that is not for the updater to say.
+    pub(super) fn new(updater: impl LinearUpdater, hand_over: Option<bool>) -> Self {
         let updater: Box<dyn LinearUpdater> = Box::new(updater);
         let mut own: &dyn Any = &*updater;
         while let Some(boxed) = own.downcast_ref::<Box<dyn LinearUpdater>>() {
@@ -36,7 +37,7 @@ impl Phase {
         if let Some(iterations) = own.downcast_ref::<ConjugateGradient>() {
             return Self::Iterations(Box::new(iterations.clone()));
         }
-        let may_end = own.is::<Handover>();
+        let may_end = hand_over.unwrap_or_else(|| own.is::<Handover>());
         Self::Factor { updater, may_end }
     }
 
@@ -160,7 +161,7 @@ impl Phase {
     ) -> Result<(), Error> {
         match self {
             Self::Factor { updater, .. } => updater.release(problem, contact, left),
-            // They notice by themselves.
+            // Iterations solve on the contact as it is then.
             Self::Iterations(_) => Ok(()),
         }
     }
@@ -334,7 +335,7 @@ mod tests {
 
     #[test]
     fn a_factor_fits_with_one_more_window() -> Result<(), Error> {
-        let phase = Phase::new(Handover::new());
+        let phase = Phase::new(Handover::new(), None);
         // On the way to full contact.
         let successor = |run: &LoadingRun, count: usize| phase.successor(run, count, 128 * 128);
         let has_successor = |run: &LoadingRun, count: usize| successor(run, count).is_some();
@@ -361,7 +362,7 @@ mod tests {
             let found = [last - 1, last].map(|count| has_successor(&run, count));
             assert_eq!(found, given_up);
             // A factor that was asked for stays.
-            let chosen = Phase::new(RecursiveCholesky::new());
+            let chosen = Phase::new(RecursiveCholesky::new(), None);
             assert!(chosen.successor(&run, last, 128 * 128).is_none());
         }
         Ok(())
@@ -373,12 +374,12 @@ mod tests {
         let square = Boussinesq::new(Grid::square(128, 1.0)?, 1.0)?;
         let run = flat(&square, usize::MAX)?;
         let last = last_factor(128 * 128);
-        let phase = Phase::new(Handover::new());
+        let phase = Phase::new(Handover::new(), None);
         for (end, is_given_up) in [(last + 500, false), (2 * last, true)] {
             assert_eq!(phase.successor(&run, last, end).is_some(), is_given_up, "{end}");
             assert_eq!(phase.stop(&run, end), if is_given_up { last } else { 128 * 128 });
         }
-        let chosen = Phase::new(RecursiveCholesky::new());
+        let chosen = Phase::new(RecursiveCholesky::new(), None);
         assert_eq!(chosen.stop(&run, 2 * last), 128 * 128);
         Ok(())
     }
@@ -386,7 +387,7 @@ mod tests {
     /// Two of six nodes are in contact, with a factor that fits.
     fn two_in_contact() -> Result<(LoadingRun, Phase), Error> {
         let mut run = test_chain::run(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0])?;
-        let mut phase = Phase::new(Handover::new());
+        let mut phase = Phase::new(Handover::new(), None);
         assert!(!phase.restore(&mut run, &[2, 0], 6)?);
         assert_eq!((run.contact.order(), phase.tolerance()), (&[2, 0][..], 0.0));
         Ok((run, phase))
@@ -427,7 +428,7 @@ mod tests {
         let (mut run, _) = two_in_contact()?;
         for (budget, is_given_up) in [(with_window(2), false), (with_window(2) - 1, true)] {
             run.memory.budget = run.memory.fixed + budget;
-            let mut phase = Phase::new(Handover::new());
+            let mut phase = Phase::new(Handover::new(), None);
             assert_eq!(phase.restore(&mut run, &[0, 2], 6)?, is_given_up);
             assert_eq!(matches!(phase, Phase::Iterations(_)), is_given_up);
             assert_eq!(run.contact.order(), [0, 2]);
@@ -446,7 +447,7 @@ mod tests {
         ] {
             let mut run = test_chain::run(&[0.0; 6])?;
             run.memory.budget = run.memory.fixed + budget;
-            let mut phase = Phase::new(Handover::new());
+            let mut phase = Phase::new(Handover::new(), None);
             assert_eq!(phase.hand_over(&mut run, 6)?, hands_over, "{budget}");
             assert_eq!(phase.make_room(&run).is_ok(), has_room, "{budget}");
         }
@@ -458,8 +459,8 @@ mod tests {
     fn what_does_not_fit_is_told() -> Result<(), Error> {
         let mut run = test_chain::solved(&[0.0; 9], &[0, 1, 2], 1.0)?;
         let fixed = run.memory.fixed;
-        let mut needing = Phase::new(Altered::needing(1000));
-        let iterations = Phase::new(ConjugateGradient::new());
+        let mut needing = Phase::new(Altered::needing(1000), None);
+        let iterations = Phase::new(ConjugateGradient::new(), None);
         let bytes = 9 * 480 + 4 * 1000;
         for (budget, of_updater, of_iterations) in [
             (1000, true, false),
@@ -499,7 +500,7 @@ mod tests {
         factor.admit(&mut run, &mut window, (4, 0.5))?;
         assert_eq!((run.contact.order(), window.nodes()), (&[2, 0, 4][..], &[4][..]));
         assert!((window.increments().next().map_or(0.0, |added| added[0]) - 0.25).abs() < 1e-15);
-        let mut iterations = Phase::new(ConjugateGradient::new());
+        let mut iterations = Phase::new(ConjugateGradient::new(), None);
         iterations.admit(&mut run, &mut window, (1, 0.5))?;
         assert_eq!(run.contact.order(), [2, 0, 4, 1]);
         run.memory.budget = run.memory.fixed + 6 * 480 + 5 * 1000 - 1;

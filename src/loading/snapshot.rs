@@ -241,7 +241,7 @@ mod tests {
     impl Case<'_> {
         /// What it is refused for.
         fn refused(&self) -> Result<Option<&'static str>, Error> {
-            self.refused_with(Phase::new(Dense))
+            self.refused_with(Phase::new(Dense, None))
         }
 
         fn refused_with(&self, phase: Phase) -> Result<Option<&'static str>, Error> {
@@ -397,7 +397,7 @@ mod tests {
         let run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         let contact = ContactState::new(&run.problem.grid(), 2, 3.0, 2.5, 0.0);
         let state = LoadingState::new(2, ContactEvent::Touch, (2, 0), contact);
-        let found = Snapshot::of(&run, &mut Phase::new(Dense), &state)?;
+        let found = Snapshot::of(&run, &mut Phase::new(Dense, None), &state)?;
         assert_eq!((&found.nodes[..], found.approach), (&[0, 2][..], 3.0));
         for (found, expected) in found.pressure.iter().zip([0.75, 0.0, 0.5, 0.0]) {
             assert!((found - expected).abs() < 1e-15);

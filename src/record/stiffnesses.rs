@@ -159,7 +159,7 @@ impl Stiffnesses {
     }
 
     /// A node that touches makes a contact stiffer, one that leaves or yields softer; both stiffnesses are positive on a half-space, and
-    /// 0 on a plateau alone. There one node makes so much of a difference, and one stiffness follows from the other but for some per cent.
+    /// 0 on a plateau alone. There one node makes at most so much of a difference, and one stiffness bounds the other within some per cent.
     pub(super) fn check(
         &self,
         before: Option<&LoadingState>,

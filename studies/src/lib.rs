@@ -2,6 +2,7 @@
 
 pub mod contact_area;
 pub mod findings;
+pub mod golden;
 pub mod line;
 pub mod order;
 pub mod page;

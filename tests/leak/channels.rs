@@ -149,7 +149,7 @@ fn pools_and_bays_are_left_out() {
     assert!(found.pressure[(4, 3)].is_nan() && found.pressure[(2, 4)].is_nan());
     assert_eq!((found.pressure[(1, 3)], found.pressure[(9, 4)]), (1.0, 0.0));
     assert!((found.pressure[(3, 1)] - found.pressure[(3, 0)]).abs() < 1e-9);
-    // PiecewiseLinear let nothing pass: a diagonal is closed.
+    // Corners let nothing pass: a diagonal is closed.
     let diagonal = DMatrix::from_fn(6, 6, |ix, iy| f64::from(u8::from(ix == iy)));
     let closed = leak(&diagonal, &Grid::square(6, 1.0).unwrap(), Boundary::Free, Axis::X).unwrap();
     assert!(closed.is_closed() && closed.pools == 4);

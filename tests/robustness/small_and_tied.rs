@@ -13,11 +13,11 @@ use nalgebra::{DMatrix, DVector};
 /// The default updater, made to give up its factor at a number of nodes in contact.
 fn seam(at: usize) -> impl LinearUpdater {
     // More than there is for so many nodes and the least window that has to follow them.
-    Altered::new(Handover::new()).on_bytes(move |inner, (contact, watched)| {
-        match contact.checked_sub(64) {
-            Some(contact) if contact >= at => usize::MAX,
-            _ => inner.bytes(contact, watched),
-        }
+    Altered::new(RecursiveCholesky::new()).on_bytes(move |inner, (contact, watched)| match contact
+        .checked_sub(64)
+    {
+        Some(contact) if contact >= at => usize::MAX,
+        _ => inner.bytes(contact, watched),
     })
 }
 
@@ -120,7 +120,7 @@ fn whole_path<U: LinearUpdater>(
     window: Option<usize>,
     allowed: Allowed,
 ) -> Result<(), String> {
-    let mut builder = LoadingSolver::builder(map, kernel).updater(updater);
+    let mut builder = LoadingSolver::builder(map, kernel).updater(updater).hand_over(true);
     if let Some(size) = window {
         builder = builder.window_size(size);
     }

@@ -32,8 +32,8 @@ use joint::Joint;
 /// Writes slip.csv (the first loading), cycles.csv (dissipation, stiffness and loss factor against amplitude), iwan.csv (the joint
 /// as elements of a spring and a slider), slip.png, stick_map.png and wear_map.png.
 ///
-/// The theory is exact for bodies of one material, or of Poisson's ratio 1/2 against a rigid one, but for some per cent of the
-/// stiffness; see docs/joints_that_slip.md. The dissipation is that of a cycle, and not of the first loading.
+/// For bodies of one material, or of Poisson's ratio 1/2 against a rigid one, stiffnesses are right within some per cent; see
+/// docs/joints_that_slip.md. The dissipation is that of a cycle, and not of the first loading.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("compliance").args(["compliance_ratio", "material"])))]
 pub(crate) struct Options {

@@ -41,7 +41,7 @@ pub(crate) struct Creep {
 /// prony : Prony
 ///     The modulus over the E* of the path: `Prony.shares`, or `Prony.relative_to`.
 /// times : array_like of float
-///     PiecewiseLinear of the history [s], ascending; two at one time are a jump. Behind the last one the value is held.
+///     Corners of the history [s], ascending; two at one time are a jump. Behind the last one the value is held.
 /// load : array_like of float, optional
 ///     Loads at the corners [N].
 /// approach : array_like of float, optional
@@ -361,7 +361,7 @@ impl Creep {
     /// Parameters
     /// ----------
     /// times : array_like of float
-    ///     Ends of the steps [s], ascending, as of `step_times`. PiecewiseLinear of the history are steps of their own besides.
+    ///     Ends of the steps [s], ascending, as of `step_times`. Corners of the history are steps of their own besides.
     ///
     /// Returns
     /// -------

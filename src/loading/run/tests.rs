@@ -55,7 +55,7 @@ fn earlier_contacts_need_room_of_their_own() -> Result<(), Error> {
     run.contact.push(4)?;
     run.releases.push(4, Left { node: 2, position: 1 });
     run.contact.push(2)?;
-    let (mut phase, mut solution) = (Phase::new(Dense), Solution::default());
+    let (mut phase, mut solution) = (Phase::new(Dense, None), Solution::default());
     // 16 · 3² bytes of a dense updater.
     run.memory.budget = run.memory.fixed + 144 + RecursiveCholesky::bytes_of(3);
     assert_eq!(phase.solve_at(&run, (3, 3.0), &mut solution)?, [0, 2, 4]);

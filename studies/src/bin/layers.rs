@@ -65,9 +65,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
-    let mut text = String::from(
-        "## Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
-    );
+    let mut text = String::from("## Coated and thin bodies\n\nStudy `layers`.\n");
     if options.only_picture {
         let picture = coats(&options.out, &mut text)?;
         println!("{text}\n{}", picture.display());
@@ -170,7 +168,7 @@ fn padded(text: &mut String) -> Result<(), Error> {
     Ok(())
 }
 
-/// The bodies whose iterations are counted, on cells of 1: a half-space, five layers, and thin and thick ones.
+/// The bodies whose iterations are counted, on cells of 1: a half-space, five layers, a thick and a thin one.
 fn counted() -> Result<Vec<(&'static str, Option<LayeredBody>)>, Error> {
     let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
     // Six layers of two cells, from a tenth of the modulus at the surface to that of the base.
@@ -188,9 +186,7 @@ fn counted() -> Result<Vec<(&'static str, Option<LayeredBody>)>, Error> {
         ("rigid base, ν = 0.3, h = 4", Some(one_layer(1.0, 0.3, 4.0, Base::Rigid)?)),
         ("rigid base, ν = 0.5, h = 4", Some(one_layer(1.0, 0.5, 4.0, Base::Rigid)?)),
         ("six layers, E/E₂ from 0.1 to 0.7", Some(LayeredBody::new(&graded, steel)?)),
-        ("stiff coat, E₁/E₂ = 3, h = 4", Some(one_layer(3.0, 0.3, 4.0, steel)?)),
         ("stiff coat, E₁/E₂ = 10, h = 32", Some(one_layer(10.0, 0.3, 32.0, steel)?)),
-        ("rigid base, ν = 0.3, h = 0.5", Some(one_layer(1.0, 0.3, 0.5, Base::Rigid)?)),
         ("rigid base, ν = 0.5, h = 1", Some(one_layer(1.0, 0.5, 1.0, Base::Rigid)?)),
     ])
 }
@@ -204,43 +200,37 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
     let amplitude = asperity::surface::Amplitude::RmsHeight(1.0);
     let surface = SelfAffine::new(0.8, 0.25 * n as f64, 8.0, amplitude, 1)?;
     let fractions = [0.01, 0.1, 0.3, 0.6];
-    let (mut loads, mut paths) = (String::new(), String::new());
+    let mut rows = String::new();
     for (name, body) in counted()?.into_iter().filter(|(name, _)| name.contains(word)) {
         let kernel: Box<dyn InfluenceKernel> = match body {
             None => Box::new(Boussinesq::new(grid, 1.0)?),
             Some(body) => Box::new(Layered::free(grid, body)?),
         };
         let start = Instant::now();
-        let _ = write!(loads, "| {name} |");
-        let _ = write!(paths, "| {name} | {:?} |", kernel.contact_growth());
+        let _ = write!(rows, "| {name} | {:?} |", kernel.contact_growth());
         let mut solver = FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-10).build()?;
         for fraction in fractions {
             match load_and_stretch(&surface, &kernel, &mut solver, fraction) {
                 Ok([load, path]) => {
-                    let _ = write!(loads, " {load} |");
-                    let _ = write!(paths, " {path} |");
+                    let _ = write!(rows, " {load}; {path} |");
                 }
                 Err(error) => {
                     eprintln!("{name}, {fraction}: {error}");
-                    loads.push_str(" – |");
-                    paths.push_str(" – |");
+                    rows.push_str(" – |");
                 }
             }
             eprintln!("{name}, {fraction}: {:.1} s", start.elapsed().as_secs_f64());
         }
-        loads.push('\n');
-        paths.push('\n');
-        eprintln!("{loads}{paths}");
+        rows.push('\n');
+        eprintln!("{rows}");
     }
     let _ = write!(
         text,
         "\n**Iterations without a factor.** A self-affine surface (H = 0.8, shortest wavelength 8 cells) on {n}² nodes with a free \
-         boundary; thicknesses in cells. Single loads from scratch to 10⁻¹⁰, at the load of each area fraction: steps of conjugate \
-         gradients on the finest grid for the pressure + for the stiffness, and all convolutions there.\n\n\
-         | body | 1 % | 10 % | 30 % | 60 % |\n|---|---:|---:|---:|---:|\n{loads}\n\
-         The first {STRETCH} events of a path from each of these states (`ConjugateGradient`): convolutions an event, and windows taken \
+         boundary; thicknesses in cells. At each area fraction: convolutions of a single load from scratch to 10⁻¹⁰, with its stiffness; \
+         and convolutions an event over the first {STRETCH} events of a path from there (`ConjugateGradient`), with the windows taken \
          back.\n\n\
-         | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{paths}"
+         | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{rows}"
     );
     Ok(())
 }
@@ -270,9 +260,7 @@ fn load_and_stretch(
     let grid = kernel.grid();
     let load = load_at(solver, fraction)?;
     let solution = solver.solve(load)?;
-    let effort = &solution.effort;
-    let load =
-        format!("{} + {}, {}", effort.iterations, effort.stiffness_iterations, effort.convolutions);
+    let load = solution.effort.convolutions.to_string();
     let nodes = (0..grid.nodes()).filter(|&node| solution.fields.contact_map.as_slice()[node]);
     let history: History = (1..)
         .zip(nodes)
@@ -369,6 +357,5 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
         },
     ];
     let picture = chart::draw(&charts, 2, &directory.join("layers.png"))?;
-    text.push_str("\n![Contact area and stiffness against load for a soft coat, none and a stiff coat](images/layers.png)\n");
     Ok(picture)
 }

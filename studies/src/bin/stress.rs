@@ -13,6 +13,7 @@ use asperity::convolution::Convolution;
 use asperity::stress::{Measure, Stress, Subsurface};
 use asperity::{Boundary, Boussinesq, Error, Grid, PeriodicBoussinesq, Spectral};
 use asperity_cli::outcome::Failure;
+use asperity_studies::golden;
 use asperity_studies::page::Section;
 use asperity_studies::study;
 use clap::Parser;
@@ -41,9 +42,7 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error: Error| Failure::new("cannot compute stresses", error);
-    let mut text = String::from(
-        "## Stress below the surface\n\nWritten by `cargo run --release -p asperity-studies --bin stress -- --report docs/validation.md`.\n",
-    );
+    let mut text = String::from("## Stress below the surface\n\nStudy `stress`.\n");
     meshes(&mut text).map_err(failed)?;
     waves(&mut text).map_err(failed)?;
     times(options.nodes, &mut text).map_err(failed)?;
@@ -153,34 +152,26 @@ fn meshes(text: &mut String) -> Result<(), Error> {
         let order = (errors[0] / errors[3]).log2() / 3.0;
         let _ = writeln!(text, " {order:.1} |");
     }
-    text.push_str("\nThe order is that from the first mesh to the last. Places of maxima scatter: a maximum is flat, and its place follows from its value with the root of the error.\n");
+    text.push_str("\nThe order is that from the first mesh to the last. A maximum is flat: its place follows from its value with the root of the error.\n");
     Ok(())
 }
 
 /// The greatest difference of σzz and σrr on the axis of a sphere, and its depth, by golden section on the closed form.
 fn sphere_maximum() -> (f64, f64) {
-    golden(|z| {
+    let difference = |z: f64| {
         let radial = -(1.0 + POISSON) * (1.0 - z * (1.0 / z).atan()) + 0.5 / (1.0 + z * z);
         radial + 1.0 / (1.0 + z * z)
-    })
+    };
+    golden::greatest(difference, (0.2, 1.5))
 }
 
 /// Half of that of a cylinder.
 fn line_maximum() -> (f64, f64) {
-    golden(|z| {
+    let half = |z: f64| {
         let root = (1.0 + z * z).sqrt();
         0.5 * (2.0 * z - (1.0 + 2.0 * z * z) / root + 1.0 / root)
-    })
-}
-
-fn golden(f: impl Fn(f64) -> f64) -> (f64, f64) {
-    let (mut a, mut b) = (0.2_f64, 1.5_f64);
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..60 {
-        let (c, d) = (b - ratio * (b - a), a + ratio * (b - a));
-        if f(c) > f(d) { b = d } else { a = c }
-    }
-    (f(0.5 * (a + b)), 0.5 * (a + b))
+    };
+    golden::greatest(half, (0.2, 1.5))
 }
 
 /// Waves of pressure on the waves of the grid, and on cells, whose pressures are steps.

@@ -101,12 +101,12 @@ impl Small {
     /// The path with a fault at a call.
     pub(super) fn path(
         &self,
-        (_, make): Maker,
+        (name, make): Maker,
         fault: Fault,
         at: usize,
     ) -> Result<Path, asperity::Error> {
         let updater = failing(make(), fault, at);
-        self.builder().updater(updater).build()
+        self.builder().updater(updater).hand_over(name == "handover").build()
     }
 
     pub(super) fn problem(&self) -> Problem {

@@ -67,7 +67,7 @@ fn is_known(path: &mut Path, states: &[LoadingState], healthy: &[(LoadingState, 
         let map = path.contact_map_at(state).unwrap();
         let count = map.iter().filter(|is_in| **is_in).count();
         assert_eq!(count, state.contact.contact_nodes);
-        let yielded = path.fields_at(state).unwrap().yielded_map;
+        let yielded = path.yielded_map_at(state).unwrap();
         let count = yielded.iter().filter(|is_in| **is_in).count();
         assert_eq!(count, state.contact.plastic.unwrap().yielded_nodes);
         if let Ok(found) = path.fields_at(state).map(|fields| fields.pressure) {

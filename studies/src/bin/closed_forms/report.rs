@@ -34,25 +34,19 @@ impl Report {
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "## Closed forms\n\n\
-             Numbers and picture are written by\n\n\
-             ```text\n\
-             cargo run --release -p asperity-studies --bin closed_forms -- --report docs/validation.md\n\
-             ```\n\n\
-             `FixedLoadSolver` to {} against the closed forms of `asperity::reference`, which share no code with it, at \
-             equal load. An error is the root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a \
-             target (of radii, for the circular punch) and four places of the apex between the nodes, since that of one \
-             state depends on how the edge of contact runs through the cells. Cells are counted over the radius of the \
-             contact, the shorter semi-axis or the half-width. Pressures are the greatest against the closed form \
-             at the same node; where that is infinite, of the cone and the punch, those from 0.35 to 0.65 of the radius. A \
-             cylinder has no approach, because it diverges logarithmically, and therefore neither \
-             stiffness nor energy.\n\n\
+             Study `closed_forms`.\n\n\
+             `FixedLoadSolver` to {} against the closed forms of `asperity::reference`, which share no code with it, at equal load. An \
+             error is the root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a target (of radii, for the \
+             circular punch) and four places of the apex between the nodes. Cells are counted over the radius of the contact, the \
+             shorter semi-axis or the half-width. Pressures are the greatest; where that is infinite, of the cone and the punch, those \
+             from 0.35 to 0.65 of the radius. The approach of a cylinder diverges logarithmically.\n\n\
              **Criterion**, for every entry: the order fitted to the finest four meshes is at least the expected one less \
              {SLACK}, and on the finest mesh the error is at most {COEFFICIENT} × cells^(−expected order). *Expected* is 2, \
              but 1 for what depends on which cells count as contact: area, stiffness, and the pressure under a circular edge \
              that cells do not follow.\n\n\
              ![Errors of area, approach, pressure, stiffness and energy against the cells over a contact, and the wave in \
              two directions beside its limits](images/closed_forms.png)\n\n\
-             The error with {} cells, and the order at which it falls:\n\n{}\n",
+             The error with {} cells, and in brackets the order at which it falls:\n\n{}\n",
             scientific(TOLERANCE, 1),
             CELLS[CELLS.len() - 1],
             self.table(),
@@ -141,8 +135,7 @@ impl Report {
         }
         let sentence = |full: &Full| {
             format!(
-                "{}: greatest pressure {:.6} p\\* on the finest grid, contact full at 1 + {b} of the load found and not at \
-                 1 − {b} {}: {}",
+                "{}: greatest pressure {:.6} p\\*, contact full at 1 + {b} of the load found and not at 1 − {b} {}: {}",
                 full.kernel.name(),
                 full.peak,
                 if full.bracketed { "on every grid" } else { "on some grids only" },
@@ -159,29 +152,20 @@ impl Report {
             wave.full[0].order(),
             scientific(EXACT, 1),
         );
-        let _ = write!(
+        let farthest = |limit: &Limit| {
+            scientific(limit.ratios.iter().map(|(distance, _)| *distance).fold(0.0, f64::max), 1)
+        };
+        let _ = writeln!(
             text,
             "**The two limits.** Corrected area in contact over that of Hertz contacts, π(3P/8π)^⅔, with {} nodes a wave, and \
-             corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, kernel Love, mean and \
-             deviation over four places of the crest between the nodes.\n\n\
-             | P | contact, of Hertz | 1 − P | no contact, of cracks |\n|---|---|---|---|\n",
-            wave.light.nodes, wave.heavy.nodes,
-        );
-        let cells = |limit: &Limit, k: usize| {
-            let row = limit.ratios.get(k);
-            row.map_or([String::new(), String::new()], |(distance, ratio)| {
-                [scientific(*distance, 1), ratio.decimals(4)]
-            })
-        };
-        for k in 0..wave.light.ratios.len().max(wave.heavy.ratios.len()) {
-            let ([p, light], [q, heavy]) = (cells(&wave.light, k), cells(&wave.heavy, k));
-            let _ = writeln!(text, "| {p} | {light} | {q} | {heavy} |");
-        }
-        let _ = write!(
-            text,
-            "\nA line in P^⅔ goes to {:.4} at P = 0, one in 1 − P to {:.4} at P = 1. **Verdict: contacts {}, holes {}** \
-             (criterion: 1 within {CLOSE}).\n",
+             corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, kernel Love, means over four \
+             places of the crest between the nodes. A line in P^⅔ up to P = {} goes to {:.4} at P = 0, one in 1 − P up to 1 − P = {} \
+             to {:.4} at P = 1. **Verdict: contacts {}, holes {}** (criterion: 1 within {CLOSE}).",
+            wave.light.nodes,
+            wave.heavy.nodes,
+            farthest(&wave.light),
             wave.light.extrapolated(),
+            farthest(&wave.heavy),
             wave.heavy.extrapolated(),
             plural(wave.light.agrees()),
             plural(wave.heavy.agrees()),

@@ -22,13 +22,9 @@ impl Study {
     fn introduction(&self) -> String {
         format!(
             "## Mesh and spectrum\n\n\
-             How much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend \
-             on the mesh? This command writes the numbers and the picture:\n\n\
-             ```text\n\
-             cargo run --release -p asperity-studies --bin mesh -- --report docs/validation.md\n\
-             ```\n\n\
+             Study `mesh`: how much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend on the mesh?\n\n\
              Self-affine surfaces as those of the section on rough contact (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel \
-             Love), {} seeds; *cells* are those to the shortest wave, λₛ. The surface of a seed \
+             Love), {} seeds, {} loads, of which the tables show every second; *cells* are those to the shortest wave, λₛ. The surface of a seed \
              is the same on every mesh. *Corrected* is the \
              area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
              (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is \
@@ -37,6 +33,7 @@ impl Study {
              ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the width of the \
              spectrum](images/mesh.png)",
             self.surfaces,
+            LOADS.len(),
             Perimeter::AREA_CORRECTION,
         )
     }
@@ -51,7 +48,7 @@ impl Study {
         text.push_str(" limit |\n|---|---|---|");
         text.push_str(&"---|".repeat(self.meshes.len()));
         text.push('\n');
-        for (place, load) in LOADS.iter().enumerate() {
+        for (place, load) in LOADS.iter().enumerate().step_by(2) {
             let row = |value: fn(&State) -> f64| {
                 let cells = self.meshes.iter();
                 let cells = cells.map(|f| format!(" {} |", f.spread(place, value).decimals(2)));
@@ -108,7 +105,9 @@ impl Study {
     fn choice(&self) -> String {
         let share = 100.0 * ENOUGH;
         let cells = |found: Option<usize>| {
-            found.map_or("no mesh of these".to_string(), |cells| format!("{cells} cells"))
+            found.map_or("no mesh of these".to_string(), |cells| {
+                format!("{cells} cells to λₛ or more")
+            })
         };
         let counted = self.coarsest(|f, load| self.left(f, load)[0].abs() <= ENOUGH);
         let corrected = self.coarsest(|f, load| self.left(f, load)[1].abs() <= ENOUGH);
@@ -116,12 +115,9 @@ impl Study {
         let stiffness = self.coarsest(|f, load| self.beside_finest(f, load)[1].abs() <= ENOUGH);
         let mut text = format!(
             "### What to choose\n\n\
-             The table gives the number of cells to the shortest wave from which on the mean over \
-             the surfaces is within {share:.0} % at all these loads, of the limit for κ and of \
-             the finest mesh for the others.\n\n\
-             | quantity | enough |\n|---|---|\n| area, cells counted | {} |\n| area, corrected | {} |\n| mean gap | {} |\n\
-             | interfacial stiffness | {} |\n\nGreatest error of each mesh over the loads, in per \
-             cent:\n\n\
+             Within {share:.0} % at all these loads, on the mean over the surfaces, of the limit for κ and of the finest mesh for the \
+             others: area as counted on {}, corrected area on {}, mean gap on {}, interfacial stiffness on {}. Greatest error of each \
+             mesh over the loads, in per cent:\n\n\
              | cells | κ counted | κ corrected | mean gap | stiffness |\n|---|---|---|---|---|\n",
             cells(counted),
             cells(corrected),
@@ -150,13 +146,11 @@ impl Study {
             );
         }
         text.push_str(
-            "\nConclusion: mean gap and stiffness are right on any mesh that represents the \
-             shortest wave. For the area use the corrected one, or better use two meshes and \
-             extrapolate the counted area, 2 κ(Δ/2) − κ(Δ). Refine by Fourier interpolation \
-             (`Topography::resample`), and only if the spectrum really ends at λₛ: a measured surface that is rough down to its \
-             pixels has no area that does not depend on the pixel. If the deviation between \
-             surfaces is greater than the error of the mesh, as under light loads, more surfaces \
-             help more than a finer mesh.",
+            "\nConclusion: mean gap and stiffness are right on any mesh that represents the shortest wave. For the area use the \
+             corrected one, or better use two meshes and extrapolate the counted area, 2 κ(Δ/2) − κ(Δ). Refine by Fourier \
+             interpolation (`Topography::resample`), and only if the spectrum really ends at λₛ: the area of a measured surface \
+             that is rough down to its pixels depends on the pixel. If surfaces differ by more than the error of the mesh, as \
+             under light loads, more surfaces help more than a finer mesh.",
         );
         text
     }
@@ -165,15 +159,16 @@ impl Study {
         let mut text = format!(
             "### Width of the spectrum\n\n{CELLS} cells to the shortest wave. α is Nayak's parameter.\n\n| λᵣ/λₛ | α |"
         );
-        for load in LOADS {
-            let _ = write!(text, " κ, corrected, {load} |");
+        let shown = || (0..LOADS.len()).step_by(2);
+        for load in shown() {
+            let _ = write!(text, " κ, corrected, {} |", LOADS[load]);
         }
         text.push_str("\n|---|---|");
-        text.push_str(&"---|".repeat(LOADS.len()));
+        text.push_str(&"---|".repeat(shown().count()));
         text.push('\n');
         for family in &self.bands {
             let _ = write!(text, "| {} | {:.1} |", family.mesh.band, family.nayak);
-            for load in 0..LOADS.len() {
+            for load in shown() {
                 let kappa = family.spread(load, State::corrected_kappa);
                 let _ = write!(text, " {} |", kappa.decimals(2));
             }

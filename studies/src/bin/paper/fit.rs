@@ -1,11 +1,7 @@
 //! The fit of an exponential or a power.
 
-use std::error::Error;
-
-use nalgebra_of_varpro::DVector;
-use varpro::prelude::*;
-use varpro::problem::SeparableProblemBuilder;
-use varpro::solvers::levmar::LevMarSolver;
+use asperity_studies::golden;
+use asperity_studies::line::Line;
 
 /// A function of x with one parameter t.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,25 +25,6 @@ impl Shape {
             Self::Power => x.powf(t),
         }
     }
-
-    /// Its derivative with respect to t.
-    fn slope(self, x: f64, t: f64) -> f64 {
-        match self {
-            Self::Decay => (-x / t).exp() * x / (t * t),
-            Self::Growth => -(x / t).exp() * x / (t * t),
-            Self::Saturation => -(-x / t).exp() * x / (t * t),
-            Self::Power => x.powf(t) * x.ln(),
-        }
-    }
-
-    /// Where to start, with x up to 1.
-    fn guess(self) -> f64 {
-        match self {
-            Self::Growth => 1.0,
-            Self::Decay | Self::Saturation => 0.4,
-            Self::Power => 0.5,
-        }
-    }
 }
 
 /// y = offset + amplitude × shape(x; t), by least squares.
@@ -66,57 +43,43 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    /// With an offset, by variable projection and Levenberg-Marquardt.
-    pub(crate) fn with_offset(points: &[(f64, f64)], shape: Shape) -> Result<Self, Box<dyn Error>> {
-        Self::new(points, shape, true)
+    /// With an offset.
+    pub(crate) fn with_offset(points: &[(f64, f64)], shape: Shape) -> Self {
+        Self::new(points, shape, |shaped| {
+            let line = Line::fit(shaped);
+            (line.intercept, line.slope)
+        })
     }
 
     /// The same with the offset zero.
-    pub(crate) fn through_zero(
-        points: &[(f64, f64)],
-        shape: Shape,
-    ) -> Result<Self, Box<dyn Error>> {
-        Self::new(points, shape, false)
+    pub(crate) fn through_zero(points: &[(f64, f64)], shape: Shape) -> Self {
+        Self::new(points, shape, |shaped| {
+            let sum = |product: fn(&(f64, f64)) -> f64| shaped.iter().map(product).sum::<f64>();
+            (0.0, sum(|(s, y)| s * y) / sum(|(s, _)| s * s))
+        })
     }
 
-    fn new(points: &[(f64, f64)], shape: Shape, offset: bool) -> Result<Self, Box<dyn Error>> {
-        // In units of the greatest, all numbers are of the order of 1.
-        let greatest = |value: fn(&(f64, f64)) -> f64| {
-            points.iter().map(|p| value(p).abs()).fold(0.0, f64::max)
+    /// Offset and amplitude are the best ones for a t, which is searched for in steps first, then between the neighbours of the best.
+    fn new(
+        points: &[(f64, f64)],
+        shape: Shape,
+        linear: impl Fn(&[(f64, f64)]) -> (f64, f64),
+    ) -> Self {
+        let unit = points.iter().map(|(x, _)| x.abs()).fold(0.0, f64::max);
+        let of = |step: f64| {
+            let t = 10_f64.powf(step / 20.0);
+            let shaped: Vec<_> =
+                points.iter().map(|(x, y)| (shape.value(x / unit, t), *y)).collect();
+            let (offset, amplitude) = linear(&shaped);
+            let squares = shaped.iter().map(|(s, y)| (offset + amplitude * s - y).powi(2));
+            let deviation = (squares.sum::<f64>() / points.len() as f64).sqrt();
+            let parameter = if shape == Shape::Power { t } else { t * unit };
+            Self { shape, offset, amplitude, parameter, deviation, unit }
         };
-        let (unit, height) = (greatest(|p| p.0), greatest(|p| p.1));
-        let x = DVector::from_iterator(points.len(), points.iter().map(|p| p.0 / unit));
-        let y = DVector::from_iterator(points.len(), points.iter().map(|p| p.1 / height));
-        let mut model = SeparableModelBuilder::<f64>::new(&["t"])
-            .function(&["t"], move |x: &DVector<f64>, t: f64| x.map(|x| shape.value(x, t)))
-            .partial_deriv("t", move |x: &DVector<f64>, t: f64| x.map(|x| shape.slope(x, t)));
-        if offset {
-            model =
-                model.invariant_function(|x: &DVector<f64>| DVector::from_element(x.len(), 1.0));
-        }
-        let model = model
-            .independent_variable(x.clone())
-            .initial_parameters(vec![shape.guess()])
-            .build()?;
-        let problem = SeparableProblemBuilder::new(model).observations(y.clone()).build()?;
-        let fit = LevMarSolver::default()
-            .solve(problem)
-            .map_err(|_| format!("the fit of {shape:?} did not converge"))?;
-        let linear = fit
-            .linear_coefficients()
-            .ok_or_else(|| format!("the fit of {shape:?} has no coefficients"))?;
-        let t = fit.nonlinear_parameters()[0];
-        let found = Self {
-            shape,
-            offset: if offset { height * linear[1] } else { 0.0 },
-            amplitude: height * linear[0],
-            parameter: if shape == Shape::Power { t } else { t * unit },
-            deviation: 0.0,
-            unit,
-        };
-        let squares = points.iter().map(|(x, y)| (found.at(*x) - y).powi(2));
-        let mean = squares.sum::<f64>() / points.len() as f64;
-        Ok(Self { deviation: mean.sqrt(), ..found })
+        let steps = (-30..=40).map(f64::from);
+        let best = steps.min_by(|a, b| of(*a).deviation.total_cmp(&of(*b).deviation));
+        let best = best.unwrap_or_default();
+        of(golden::greatest(|step| -of(step).deviation, (best - 1.0, best + 1.0)).1)
     }
 
     /// y at x.
@@ -126,5 +89,36 @@ impl Fit {
             _ => self.shape.value(x, self.parameter),
         };
         self.offset + self.amplitude * shape
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_points_give_their_parameters() {
+        for (shape, parameter) in [
+            (Shape::Decay, 0.7),
+            (Shape::Growth, 2.3),
+            (Shape::Saturation, 1.1),
+            (Shape::Power, 0.45),
+        ] {
+            let unit = 3.0;
+            let points = |offset: f64| {
+                (1..=40).map(f64::from).map(move |k| {
+                    let x = unit * k / 40.0;
+                    let of = if shape == Shape::Power { x / unit } else { x };
+                    (x, offset - 2.5 * shape.value(of, parameter))
+                })
+            };
+            let with = Fit::with_offset(&points(0.3).collect::<Vec<_>>(), shape);
+            let without = Fit::through_zero(&points(0.0).collect::<Vec<_>>(), shape);
+            for (fit, offset) in [(with, 0.3), (without, 0.0)] {
+                assert!((fit.parameter / parameter - 1.0).abs() < 1e-6, "{fit:?}");
+                assert!((fit.amplitude + 2.5).abs() < 1e-5, "{fit:?}");
+                assert!((fit.offset - offset).abs() < 1e-5 && fit.deviation < 1e-6, "{fit:?}");
+            }
+        }
     }
 }

@@ -128,19 +128,12 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
     let table = table(rows, &surfaces);
     let mut text = format!(
         "## Other programs\n\n\
-         This section compares the results of other programs on the same surfaces, loads and \
-         half-spaces. The first command installs and runs the other programs and stores their \
-         results in `studies/src/bin/peers/peers.csv`. The second solves the same problems with \
-         asperity, stops if its results differ from those that the table was compared with, and \
-         writes this section:\n\n\
-         ```text\n\
-         studies/src/bin/peers/peers.sh\n\
-         cargo run --release -p asperity-studies --bin peers -- --report docs/validation.md\n\
-         ```\n\n\
-         * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py` next to the table, which shares nothing \
-         with any of them: the influence matrix entry by entry, LU on the contact set, and the set changed until the \
-         conditions of contact hold to rounding. It decides who is right, on grids of up to 1024 \
-         nodes.\n\
+         Study `peers`: other programs on the same surfaces, loads and half-spaces. `studies/src/bin/peers/peers.sh` installs and \
+         runs them and stores their results in `peers.csv` beside it. The study solves the same problems with asperity, and stops \
+         if its results differ from those that the table was compared with.\n\n\
+         * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py` beside the table: the influence matrix entry \
+         by entry, LU on the contact set, and the set changed until the conditions of contact hold to rounding. It decides who is \
+         right, on grids of up to 1024 nodes.\n\
          * **Half-spaces**: free with Love's kernel (`Boussinesq`); periodic with 2/(E\\*|q|) (`Spectral`).\n\
          * **Surfaces**: the first eight on 128 × 128 nodes; then grids that are not square, with cells of 3 : 1, and with an \
          odd number of nodes along y or x. `surfaces.rs` there makes them.\n\
@@ -211,10 +204,8 @@ fn shortest_waves(waves: &[Wave]) -> String {
     let why = match wrong.len() {
         0 => "All are right.".to_string(),
         count => format!(
-            "All but {count} are right within {}: {}. With an odd number of nodes along its first axis tamaas gives one \
-             of the two conjugates of the shortest wave the wave number of the next shorter one. The \
-             error that this causes is in proportion to the amplitude of that wave; with an even \
-             number of nodes along the first axis there is none.",
+            "All but {count} are right within {}: {}. With an odd number of nodes along its first axis tamaas gives one of the two \
+             conjugates of the shortest wave the wave number of the next shorter one.",
             scientific(WAVE, 1),
             wrong.join("; "),
         ),

@@ -64,10 +64,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     let convergence = wave::Convergence::run(options)?;
     let text = format!(
         "## The periodic half-space\n\n\
-         Everything in this section is written by\n\n\
-         ```text\n\
-         cargo run --release -p asperity-studies --bin periodic_study -- --report docs/validation.md\n\
-         ```\n\n{}\n\n{}",
+         Study `periodic_study`.\n\n{}\n\n{}",
         convergence.text(),
         study.text(),
     );

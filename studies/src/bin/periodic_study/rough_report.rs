@@ -51,9 +51,9 @@ impl Study {
              * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected; under the lightest load {} \
              and {}. Bush, Gibson and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. The \
              corrected κ is between the two at every light load: {} (criterion: the mean of the surfaces, each \
-             load). The section on mesh and spectrum extrapolates κ to vanishing cells.\n\
+             load).\n\
              * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the greatest load the \
-             area that is still open is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: within {:.0} %).\n\
+             open area is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: within {:.0} %).\n\
              * **Mean gap.** Between the first few contacts and a fifth of the area in contact, p̄ ∝ exp(−ḡ/(γ h_rms)): {} (criterion: \
              γ from {} to {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness.\n\
              * **Stiffness.** The exact tangent, not a difference of gaps: K_i h_rms/(A₀ p̄) is {} over the upper decade of the \
@@ -93,7 +93,7 @@ impl Study {
             "| p̄/(E\\* h′) | A/A₀ | Persson | κ = A E\\* h′/(A₀ p̄) | κ, corrected | ḡ/h_rms | \
                         K_i h_rms/(A₀ p̄) |\n|---|---|---|---|---|---|---|\n"
                 .to_string();
-        for load in (0..self.loads).step_by(self.loads.div_ceil(12)) {
+        for load in (0..self.loads).step_by((self.loads / 4).max(1)) {
             let Some(first) = self.at(load).next() else {
                 break;
             };

@@ -36,20 +36,18 @@ impl Convergence {
         });
         format!(
             "### A wave against Westergaard\n\n\
-             A sinusoidal surface, pressed flat: H. M. Westergaard (1939) gives area, mean gap, stiffness and the load of full \
-             contact in closed form (`reference::Westergaard`). The whole path to full contact, for both periodic kernels, with a \
-             row of nodes on the crest:\n\n\
+             A sinusoidal surface, pressed flat: H. M. Westergaard (1939) gives the closed form (`reference::Westergaard`). The \
+             whole path to full contact, for both periodic kernels, with a row of nodes on the crest:\n\n\
              ![Errors of mean gap, area and stiffness against the nodes along a wave](images/westergaard.png)\n\n{}\n\
              * **Mean gap**: the greatest error at any event, from first touch to full contact. Second order: {gap:.2} (Love) and \
              {spectral_gap:.2} (spectral) times amplitude × (cell / wavelength)² on the finest grid.\n\
-             * **Area**: the greatest error just before a row of nodes touches, between 10 and 90 % of the load of full contact. \
-             First order, as everything that is counted in cells: too small by {area:.2} (Love) and {spectral_area:.2} (spectral) cells \
-             over the wavelength. Then two rows touch at once, one at each edge, and it is {:.2} and {:.2} too much.\n\
-             * **Stiffness**: the greatest relative error in the same range. It follows the contact area.\n\
+             * **Area**: the greatest error just before a row of nodes touches, between 10 and 90 % of the load of full contact: \
+             too small by {area:.2} (Love) and {spectral_area:.2} (spectral) cells over the wavelength. Then two rows touch at once, \
+             one at each edge, and it is {:.2} and {:.2} too much.\n\
+             * **Stiffness**: the greatest relative error in the same range.\n\
              * **Load of full contact**: exact to rounding, {exact:.0e}, for the spectral kernel, which \
              represents the wave exactly. Love's cells are stiffer by {full:.3} (cell / wavelength)², in theory π²/6 = {:.3}, because \
-             the wave component of a pressure that is uniform on each cell is smaller by this \
-             amount.\n\n\
+             the pressure of a cell is uniform.\n\n\
              **Verdict: {}** (criterion: orders, those of the finest three grids, within {SLACK} of 2, 1 and 1). \
              `tests/closed_forms/westergaard.rs` holds the constants.",
             self.table(),

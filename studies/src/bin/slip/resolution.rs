@@ -63,14 +63,18 @@ pub(crate) fn write(text: &mut String) -> Result<(), Error> {
         text.push('\n');
     }
     let finest = columns.last().map(|(_, cycles)| cycles.clone()).unwrap_or_default();
-    let _ = writeln!(text, "\nSecant stiffnesses differ from those on the finest grid by up to");
-    for (nodes, cycles) in columns.iter().take(columns.len().saturating_sub(1)) {
+    let off = columns.iter().take(columns.len().saturating_sub(1)).map(|(nodes, cycles)| {
         let off = cycles
             .iter()
             .zip(&finest)
             .map(|(cycle, finest)| (cycle.secant_stiffness / finest.secant_stiffness - 1.0).abs());
-        let _ = writeln!(text, "{:.1e} on {nodes}²,", off.fold(0.0, f64::max));
-    }
-    text.push_str("at any of these amplitudes.\n");
+        format!("{:.1e} on {nodes}²", off.fold(0.0, f64::max))
+    });
+    let off: Vec<String> = off.collect();
+    let _ = writeln!(
+        text,
+        "\nSecant stiffnesses differ from those on the finest grid by at most {}.",
+        off.join(" and ")
+    );
     Ok(())
 }

@@ -24,7 +24,7 @@ pub(crate) fn write(text: &mut String) -> Result<(), Error> {
     let radius = 0.375;
     let load = sphere.load(radius * radius / RADIUS);
     let friction = Friction::new(0.3, 1.2)?;
-    for nodes in [32, 64, 128] {
+    for nodes in [64, 128] {
         let kernel = Boussinesq::new(Grid::square(nodes, 1.0)?, 1.0)?;
         let path = LoadingSolver::builder(&surface, &kernel).max_load(load).build()?;
         let history: History = path.collect::<Result<_, _>>()?;

@@ -28,8 +28,7 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         (Pressed::sphere(nodes), &[0.0, 0.3, 0.5][..]),
         (Pressed::rough(1, nodes), &[0.3, 0.5]),
         (Pressed::rough(2, nodes), &[0.3, 0.5]),
-        (Pressed::rough(3, nodes), &[0.3]),
-        (Pressed::rough(4, nodes), &[0.0, 0.3]),
+        (Pressed::rough(4, nodes), &[0.3]),
         (Pressed::ridges(5, true, nodes), &[0.3]),
         (Pressed::ridges(5, false, nodes), &[0.3]),
     ];

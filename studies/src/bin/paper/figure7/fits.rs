@@ -1,7 +1,5 @@
 //! The fits of Fig. 7.
 
-use std::error::Error;
-
 use crate::fit::{Fit, Shape};
 use crate::run::{GREATEST_LOAD, Run};
 use crate::study::Family;
@@ -70,24 +68,24 @@ pub(super) fn light_loads(run: &Run, greatest: f64) -> Vec<(f64, f64)> {
 }
 
 impl Approach {
-    fn of(family: &Family, greatest: f64) -> Result<Self, Box<dyn Error>> {
+    fn of(family: &Family, greatest: f64) -> Self {
         let (mut exponentials, mut powers, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
         for run in &family.runs {
             let points = light_loads(run, greatest);
-            exponentials.push(Fit::with_offset(&points, Shape::Decay)?);
-            powers.push(Fit::with_offset(&points, Shape::Power)?);
+            exponentials.push(Fit::with_offset(&points, Shape::Decay));
+            powers.push(Fit::with_offset(&points, Shape::Power));
             let ends = points.first().zip(points.last());
             ranges.extend(ends.map(|(a, b)| (a.1 - b.1).abs()));
         }
         let of = |value: fn(&Fit) -> f64| Spread::of(exponentials.iter().map(value));
-        Ok(Self {
+        Self {
             offset: of(|f| f.offset),
             amplitude: of(|f| f.amplitude),
             scale: of(|f| f.parameter),
             deviation: of(|f| f.deviation),
             of_power: Spread::of(powers.iter().map(|f| f.deviation)),
             range: Spread::of(ranges),
-        })
+        }
     }
 }
 
@@ -95,10 +93,9 @@ impl Approach {
 pub(super) const GROWTHS: [Shape; 3] = [Shape::Growth, Shape::Saturation, Shape::Power];
 
 /// Those of two parameters through K at light loads.
-pub(super) fn growths(run: &Run) -> Result<[Fit; 3], Box<dyn Error>> {
+pub(super) fn growths(run: &Run) -> [Fit; 3] {
     let points = growth_loads(run);
-    let [growing, saturating, power] = GROWTHS.map(|shape| Fit::through_zero(&points, shape));
-    Ok([growing?, saturating?, power?])
+    GROWTHS.map(|shape| Fit::through_zero(&points, shape))
 }
 
 /// (W, K Sq/A₀E*) at evenly spaced loads from [`LEAST_LOAD`] to [`SMALL_LOAD`].
@@ -108,11 +105,11 @@ pub(super) fn growth_loads(run: &Run) -> Vec<(f64, f64)> {
 }
 
 /// Their rms deviations over the rms K.
-fn growth(run: &Run) -> Result<[f64; 3], Box<dyn Error>> {
+fn growth(run: &Run) -> [f64; 3] {
     let points = growth_loads(run);
     let squares = points.iter().map(|(_, k)| k * k).sum::<f64>();
     let rms = (squares / points.len() as f64).sqrt();
-    Ok(growths(run)?.map(|fit| fit.deviation / rms))
+    growths(run).map(|fit| fit.deviation / rms)
 }
 
 /// A/A₀ of the first state with 95 % of the stiffness of the punch.
@@ -139,13 +136,12 @@ fn exponent(run: &Run) -> Line {
 }
 
 impl Fits {
-    pub(super) fn of(family: &Family, punch: f64) -> Result<Self, Box<dyn Error>> {
+    pub(super) fn of(family: &Family, punch: f64) -> Self {
         let lines: Vec<Line> = family.runs.iter().map(line).collect();
-        let growth: Vec<[f64; 3]> = family.runs.iter().map(growth).collect::<Result<_, _>>()?;
+        let growth: Vec<[f64; 3]> = family.runs.iter().map(growth).collect();
         let exponents = family.runs.iter().map(|run| exponent(run).slope);
-        let [a, b, c] = LIGHT_LOADS.map(|load| Approach::of(family, load));
-        Ok(Self {
-            light: [a?, b?, c?],
+        Self {
+            light: LIGHT_LOADS.map(|load| Approach::of(family, load)),
             line: [
                 Spread::of(lines.iter().map(|l| l.slope)),
                 Spread::of(lines.iter().map(|l| l.intercept)),
@@ -156,6 +152,6 @@ impl Fits {
             exponent: Spread::of(exponents),
             growth: [0, 1, 2].map(|k| Spread::of(growth.iter().map(|found| found[k]))),
             saturated_at: family.spread(|run| saturated_at(run, punch)),
-        })
+        }
     }
 }

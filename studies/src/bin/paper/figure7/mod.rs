@@ -2,7 +2,6 @@
 
 mod fits;
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use crate::fit::{Fit, Shape};
@@ -27,7 +26,6 @@ pub(crate) struct Figure7 {
 }
 
 pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> {
-    let failed = |error: Box<dyn Error>| Failure::new("the fits of Fig. 7", error);
     let mut fits = Vec::new();
     let mut rows = Vec::new();
     let (mut small, mut all, mut rest) = (Vec::new(), Vec::new(), Vec::new());
@@ -35,7 +33,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> 
     // The approach without that of the punch under the same load.
     let less = |(load, approach): (f64, f64)| (load, approach + load / study.punch);
     for (place, family) in study.families.iter().enumerate() {
-        fits.push(Fits::of(family, study.punch).map_err(failed)?);
+        fits.push(Fits::of(family, study.punch));
         let colour = colour(place);
         for (index, run) in family.runs.iter().enumerate() {
             rows.extend(run.points.iter().map(|p| {
@@ -56,7 +54,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> 
         }
         if let Some(run) = family.runs.first() {
             let points = light_loads(run, SMALL_LOAD);
-            let fit = Fit::with_offset(&points, Shape::Decay).map_err(failed)?;
+            let fit = Fit::with_offset(&points, Shape::Decay);
             let curve = small_loads().map(|w| (w, fit.at(w)));
             small.push(Series::new("", BLACK, Style::Dashed, curve));
             let line = line(run);
@@ -118,7 +116,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> 
             series: logarithmic,
             legend: Corner::BottomRight,
         },
-        growth_chart(study).map_err(failed)?,
+        growth_chart(study),
     ];
     let picture = chart::draw(&charts, 2, &directory.join("figure7.png"))?;
     Ok(Figure7 { fits, picture })
@@ -130,7 +128,7 @@ fn small_loads() -> impl Iterator<Item = f64> {
 }
 
 /// K at light loads with what it may grow like, the first run.
-fn growth_chart(study: &Study) -> Result<Chart, Box<dyn Error>> {
+fn growth_chart(study: &Study) -> Chart {
     let mut series = Vec::new();
     let mut title = "Growth of K at light loads".to_string();
     let first = study.families.first();
@@ -140,17 +138,17 @@ fn growth_chart(study: &Study) -> Result<Chart, Box<dyn Error>> {
         let every = points.iter().step_by(10).copied();
         series.push(Series::new("computed", BLUE, Style::Dots, every));
         let names = ["c exp(W/t)", "c (1 − exp(−W/t))", "c W^α"];
-        let fits = growths(run)?.into_iter().zip(names);
+        let fits = growths(run).into_iter().zip(names);
         for ((fit, name), colour) in fits.zip([ORANGE, GREEN, BLACK]) {
             let curve = points.iter().map(|(load, _)| (*load, fit.at(*load)));
             series.push(Series::new(name, colour, Style::Line, curve));
         }
     }
-    Ok(Chart {
+    Chart {
         title,
         x: Axis::plain("load W / A₀E*", 0.0, SMALL_LOAD),
         y: Axis::plain("K Sq / A₀E*", 0.0, 0.005),
         series,
         legend: Corner::BottomRight,
-    })
+    }
 }
