@@ -38,6 +38,7 @@
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
 //! | save a path and continue it | [`record`] |
 //! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
+//! | surfaces that stick: pull-off force, both branches | [`adhesion`] |
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
 //! | viscoelastic bodies: creep, relaxation, cycles | [`creep`] |
 //! | stress below the surface: where it is greatest, the load of first yield | [`stress`] |
@@ -85,12 +86,13 @@
 //!
 //! # Limits of the model
 //!
-//! Contact is frictionless and without adhesion, and slopes are small. It is elastic, and unloading retraces loading, unless a
+//! Contact is frictionless, without adhesion unless that is asked for ([`adhesion`]), and slopes are small. It is elastic, and unloading retraces loading, unless a
 //! hardness is given ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the greatest pressure with it.
 
 #![warn(missing_debug_implementations)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+pub mod adhesion;
 pub mod bed;
 mod cell_response;
 pub mod contact;
@@ -130,7 +132,8 @@ pub use asperity_surfaces::{
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::{
-    BedError, CreepError, Error, JointError, KernelError, SlipError, StressError, UpdaterError,
+    AdhesionError, BedError, CreepError, Error, JointError, KernelError, SlipError, StressError,
+    UpdaterError,
 };
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{

@@ -1,6 +1,10 @@
 //! All types of this crate can be sent to other threads and shared between them; of those with parameters, where these can. The
 //! builders cannot: they borrow a surface and a kernel that need not. What is asserted here holds if it compiles.
 
+use crate::adhesion::{
+    Adhesion, AdhesiveBranch, AdhesiveEnd, AdhesiveEvent, AdhesiveFields, AdhesivePath,
+    AdhesiveState, CohesiveLaw, Direction, NodeState,
+};
 use crate::bed::{Bed, BedState, Piece, Spring, Superposed, Superposition};
 use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
 use crate::convolution::Convolution;
@@ -39,8 +43,8 @@ use crate::updater::{
     ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, UpdaterReport,
 };
 use crate::{
-    BedError, Error, FileError, Grid, JointError, KernelError, Problem, SlipError, StressError,
-    UpdaterError, Warning,
+    AdhesionError, BedError, Error, FileError, Grid, JointError, KernelError, Problem, SlipError,
+    StressError, UpdaterError, Warning,
 };
 
 /// Compiles for types that can be sent and shared.
@@ -54,6 +58,7 @@ send_and_sync!(Grid, Problem, Warning);
 send_and_sync!(
     Error,
     FileError,
+    AdhesionError,
     BedError,
     JointError,
     KernelError,
@@ -89,6 +94,18 @@ send_and_sync!(
     LoadingSolver<Dense>,
     LoadingSolver<RecursiveCholesky>,
     LoadingState,
+);
+send_and_sync!(
+    Adhesion,
+    AdhesiveBranch,
+    AdhesiveEnd,
+    AdhesiveEvent,
+    AdhesiveFields,
+    AdhesivePath,
+    AdhesiveState,
+    CohesiveLaw,
+    Direction,
+    NodeState,
 );
 send_and_sync!(
     Bins,

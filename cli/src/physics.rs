@@ -18,7 +18,7 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
     ),
     (
         &["adhesi", "surface-energy", "cohesi", "jkr", "dmt"],
-        "nothing pulls: pressures are not negative",
+        "nothing pulls here; the library follows surfaces that stick (`asperity::adhesion`)",
     ),
     (
         &["viscoel", "creep", "relax", "rate", "frequency"],

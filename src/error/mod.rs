@@ -1,5 +1,6 @@
 //! Every way in which this crate can refuse an input or fail to answer.
 
+mod adhesion;
 mod bed;
 mod creep;
 mod joint;
@@ -12,6 +13,7 @@ use asperity_surfaces::number::{counted, quantity};
 use asperity_surfaces::{Error as SurfaceError, FileError};
 use thiserror::Error;
 
+pub use adhesion::AdhesionError;
 pub use bed::BedError;
 pub use creep::CreepError;
 pub use joint::JointError;
@@ -319,6 +321,10 @@ pub enum Error {
     /// A path whose increments cannot be superposed, or that ends before what is asked of it.
     #[error(transparent)]
     Bed(#[from] BedError),
+
+    /// Adhesion that the mesh does not resolve, or that is not derived.
+    #[error(transparent)]
+    Adhesion(#[from] AdhesionError),
 
     /// A viscoelastic contact that has no answer.
     #[error(transparent)]

@@ -79,6 +79,10 @@ impl Columns {
     pub(super) fn watch(&mut self, kept: &[usize], new: usize) {
         let rows = self.rows;
         let old = self.blocks.first().map_or(0, |block| block.width);
+        if kept.last().is_some_and(|&last| last >= old) {
+            // Some were new the last time, and nothing has touched since.
+            return self.gather(kept, new);
+        }
         self.blocks.truncate(1);
         if kept.is_empty() {
             self.blocks.clear();
@@ -93,6 +97,25 @@ impl Columns {
             block.values.truncate(to);
             block.width = kept.len();
         }
+        self.add(new);
+    }
+
+    /// The same where those to keep are in several blocks.
+    fn gather(&mut self, kept: &[usize], new: usize) {
+        let mut values = self.room(self.rows, kept.len());
+        let located: Vec<_> = kept.iter().filter_map(|&position| self.locate(position)).collect();
+        for row in 0..self.rows {
+            values.extend(
+                located.iter().map(|(block, column)| block.values[row * block.width + column]),
+            );
+        }
+        self.blocks = vec![Block { width: kept.len(), values }];
+        self.add(new);
+    }
+
+    /// Makes room for new columns.
+    fn add(&mut self, new: usize) {
+        let rows = self.rows;
         // An even number of blocks of much the same width, so that two threads end together.
         let blocks = 2 * new.div_ceil(2 * WIDTH);
         let units = new.div_ceil(UNIT);

@@ -211,7 +211,8 @@ impl LinearUpdater for RecursiveCholesky {
 mod tests {
     use super::*;
 
-    /// One block of 256 × 256 numbers, columns of 256 rows for two watched nodes, and three right-hand sides of five nodes.
+    /// One block of 256 × 256 numbers, columns of 256 rows for two watched nodes, and three right-hand sides of five
+    /// nodes.
     #[test]
     fn bytes_are_those_of_factor_columns_and_right_hand_sides() {
         let bytes = 8 * (256 * 256 + 256 * 2 + 3 * 5);
@@ -220,5 +221,30 @@ mod tests {
         // Joined in blocks of 256, whose Schur complement and factor come to it.
         let joined = 8 * (256 * 256 + 256 * 256 + 3 * 356 + 2 * 256 * 256);
         assert_eq!(RecursiveCholesky::bytes_of(100), joined);
+    }
+
+    /// Nodes that were watched before are known again, also those that were new then: the same matrix as of an updater
+    /// that has watched nothing.
+    #[test]
+    fn nodes_are_watched_again_before_any_touches() -> Result<(), Error> {
+        let problem = crate::test_chain::problem(&[0.0; 400])?;
+        let contact: Vec<usize> = (0..400).step_by(7).collect();
+        let free = |step| -> Vec<usize> {
+            (0..400_usize).step_by(step).filter(|node| node % 7 != 0).collect()
+        };
+        let (mut updater, sequence) = RecursiveCholesky::of(&problem, &contact)?;
+        let mut again = Schur::default();
+        for step in [1, 2, 6] {
+            updater.watch(&problem, &sequence, &free(step), &mut again)?;
+        }
+        let (mut other, sequence) = RecursiveCholesky::of(&problem, &contact)?;
+        let mut first = Schur::default();
+        other.watch(&problem, &sequence, &free(6), &mut first)?;
+        for j in 0..first.size() {
+            for i in j..first.size() {
+                assert!((first.entry(i, j) - again.entry(i, j)).abs() < 1e-15, "{i} {j}");
+            }
+        }
+        Ok(())
     }
 }

@@ -1,0 +1,507 @@
+//! The watched nodes of a window: what each does until something happens, and what an event changes.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Accum, Mat, MatMut, Par, Side, unzip, zip};
+
+use super::law::CohesiveLaw;
+use super::state::NodeState;
+use crate::parallel::vectorized;
+use crate::updater::Schur;
+
+/// Pivots below this part of a compliance count as unstable.
+const LEAST_PIVOT: f64 = 1e-10;
+/// A window ends behind a pivot below this part: what it made of the matrix has lost digits.
+const SMALL_PIVOT: f64 = 1e-5;
+/// Nodes within this part of the range, or of the stress, of an event have it together.
+const TIE: f64 = 1e-13;
+/// By how much a gap may be beside a corner of the law, relative to the range.
+const CORNER: f64 = 1e-11;
+
+/// A watched node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    pub(super) node: usize,
+    pub(super) state: NodeState,
+    pub(super) pressure: f64,
+    pub(super) gap: f64,
+}
+
+/// Something that happens to a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Change {
+    pub(super) node: usize,
+    pub(super) from: NodeState,
+    pub(super) to: NodeState,
+}
+
+/// Pressures and gaps of watched nodes along a parameter, with the matrix of how each answers to the others.
+///
+/// Of every node one of two quantities is given and the other answers. Where its gap is 0 the pressure answers; on the
+/// slope of the law it does too, and gap − p/k = h₂ is given; elsewhere the gap answers to a pressure that is given.
+/// The matrix has the answers of its rows to what is given of its columns. A node that changes from one kind to another
+/// is a pivot: `T_ij`, `i, j ≠ s`, loses `T_is T_sj / T_ss`. The pivot of a node that touches is positive, and that of
+/// one that becomes soft, T_ss − 1/k, is negative in a stable state: it is quasi-definite as that of a path with a
+/// hardness, but its nodes also go back. Two more rows are sums of all pressures and of all gaps, and one more column
+/// is the rates along the parameter.
+#[derive(Debug)]
+pub(super) struct Board {
+    law: CohesiveLaw,
+    pub(super) rows: Vec<Row>,
+    /// Column by column, of `rows + 2` numbers each.
+    matrix: Vec<f64>,
+    /// Sums of all pressures and of all gaps.
+    pub(super) sums: [f64; 2],
+    /// Nodes whose traction is held, those that are carried first.
+    pub(super) held: Vec<(usize, f64)>,
+    /// The row whose pull is the parameter, if one is.
+    carried: Option<usize>,
+    /// 1 or −1: loading or unloading.
+    sign: f64,
+    /// Nodes in contact, on the whole grid.
+    pub(super) contact_nodes: usize,
+    /// Whether a pivot was so small that the window should end.
+    pub(super) is_worn: bool,
+    pub(super) changes: Vec<Change>,
+}
+
+/// What a window begins with.
+pub(super) struct Beginning<'a> {
+    pub(super) law: CohesiveLaw,
+    pub(super) sign: f64,
+    /// Those out of contact, of which the soft ones come first, and those in contact.
+    pub(super) rows: Vec<Row>,
+    pub(super) schur: &'a Schur,
+    /// By row: what a unit of what is given makes of both sums, soft nodes as if they were not.
+    pub(super) sums_by_row: Vec<[f64; 2]>,
+    /// By row: how fast its quantity that answers grows along the parameter.
+    pub(super) rates: Vec<f64>,
+    /// Sums of all pressures and of all gaps, with their rates.
+    pub(super) sums: [[f64; 2]; 2],
+    pub(super) held: Vec<(usize, f64)>,
+    pub(super) is_carried: bool,
+    pub(super) contact_nodes: usize,
+}
+
+impl Board {
+    pub(super) fn new(begin: Beginning<'_>) -> Self {
+        let size = begin.rows.len();
+        let height = size + 2;
+        let mut matrix = vec![0.0; height * (size + 1)];
+        for (j, column) in matrix.chunks_exact_mut(height).take(size).enumerate() {
+            // The other quantity is given of those in contact: a gap, of which the matrix of the updater has the
+            // negative.
+            let sign = if begin.rows[j].state == NodeState::Contact { -1.0 } else { 1.0 };
+            for (i, value) in column[..size].iter_mut().enumerate() {
+                *value = sign * begin.schur.entry(i, j);
+            }
+            column[size..].copy_from_slice(&begin.sums_by_row[j]);
+        }
+        let carried = begin.held.first().filter(|_| begin.is_carried);
+        let carried =
+            carried.and_then(|&(node, _)| begin.rows.iter().position(|row| row.node == node));
+        let mut board = Self {
+            law: begin.law,
+            rows: begin.rows,
+            matrix,
+            sums: begin.sums.map(|[value, _]| value),
+            held: begin.held,
+            carried,
+            sign: begin.sign,
+            contact_nodes: begin.contact_nodes,
+            is_worn: false,
+            changes: Vec::new(),
+        };
+        board.soften_first();
+        // Behind these pivots, which have their part in the rates already.
+        let rates = begin.rates.iter().copied().chain(begin.sums.iter().map(|[_, rate]| *rate));
+        board.matrix[height * size..].iter_mut().zip(rates).for_each(|(to, rate)| *to = rate);
+        board
+    }
+
+    fn size(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        self.matrix[row + (self.size() + 2) * column]
+    }
+
+    fn compliance(&self) -> f64 {
+        self.law.slope().recip()
+    }
+
+    /// Exchanges what is given of a node and what answers.
+    fn pivot(&mut self, place: usize) {
+        let height = self.size() + 2;
+        let inverse = self.entry(place, place).recip();
+        let mut own = self.matrix[height * place..height * (place + 1)].to_vec();
+        own[place] = 0.0;
+        let matrix = &mut self.matrix;
+        vectorized(
+            #[inline(always)]
+            || {
+                for (j, column) in matrix.chunks_exact_mut(height).enumerate() {
+                    let factor = column[place] * inverse;
+                    if j != place && factor != 0.0 {
+                        column.iter_mut().zip(&own).for_each(|(value, own)| *value -= factor * own);
+                        column[place] = -factor;
+                    }
+                }
+            },
+        );
+        own.iter_mut().for_each(|value| *value *= inverse);
+        own[place] = inverse;
+        self.matrix[height * place..height * (place + 1)].copy_from_slice(&own);
+    }
+
+    /// Puts all soft nodes, which come first, on the slope of the law, as one pivot: with A = T_ss − 1/k
+    ///
+    /// ```text
+    /// T_ss ← A⁻¹,   T_sr ← −A⁻¹ T_sr,   T_rs ← T_rs A⁻¹,   T_rr ← T_rr − T_rs A⁻¹ T_sr
+    /// ```
+    fn soften_first(&mut self) {
+        let (size, height) = (self.size(), self.size() + 2);
+        let soft = self.rows.iter().take_while(|row| row.state == NodeState::Soft).count();
+        for place in 0..soft {
+            self.shift(place, -self.compliance());
+        }
+        let minus = Mat::from_fn(soft, soft, |i, j| -self.matrix[i + height * j]);
+        let Ok(factor) = minus.llt(Side::Lower) else {
+            // Not stable, which the solution of this state has excluded: one by one, whatever comes of it.
+            return (0..soft).for_each(|place| self.pivot(place));
+        };
+        let inverse = factor.inverse();
+        let all =
+            MatMut::from_column_major_slice_mut(&mut self.matrix[..height * size], height, size);
+        let (own, beside, below, rest) = all.split_at_mut(soft, soft);
+        let (mut own, mut beside, mut below, rest) = (own, beside, below, rest);
+        let answered = &inverse * beside.as_ref();
+        matmul(rest, Accum::Add, below.as_ref(), answered.as_ref(), 1.0, Par::Seq);
+        beside.copy_from(&answered);
+        let taken = below.as_ref() * &inverse;
+        zip!(&mut below, &taken).for_each(|unzip!(to, value)| *to = -value);
+        zip!(&mut own, &inverse).for_each(|unzip!(to, value)| *to = -value);
+    }
+
+    /// Puts a node whose pressure is given on the slope of the law.
+    fn soften(&mut self, place: usize) {
+        self.shift(place, -self.compliance());
+        self.pivot(place);
+    }
+
+    /// Takes it off the slope.
+    fn harden(&mut self, place: usize) {
+        self.pivot(place);
+        self.shift(place, self.compliance());
+    }
+
+    fn shift(&mut self, place: usize, by: f64) {
+        let height = self.size() + 2;
+        self.matrix[place + height * place] += by;
+    }
+
+    /// The pivot with which a node whose pressure is given would be soft, over 1/k: negative where that is stable.
+    fn softness(&self, place: usize) -> f64 {
+        self.entry(place, place) / self.compliance() - 1.0
+    }
+
+    /// Rates of pressure and gap.
+    pub(super) fn rates(&self, place: usize) -> [f64; 2] {
+        let rate = self.entry(place, self.size());
+        match self.rows[place].state {
+            NodeState::Contact => [rate, 0.0],
+            NodeState::Soft => [rate, rate * self.compliance()],
+            _ if self.carried == Some(place) => [-self.sign, rate],
+            _ => [0.0, rate],
+        }
+    }
+
+    /// Rates of the sums of all pressures and of all gaps.
+    pub(super) fn sum_rates(&self) -> [f64; 2] {
+        [0, 1].map(|k| self.entry(self.size() + k, self.size()))
+    }
+
+    /// When something happens next, to which row: of those that tie the one of the lowest node.
+    pub(super) fn next(&self) -> Option<(f64, usize)> {
+        let times = (0..self.size()).filter_map(|place| {
+            let left = self.left(place)?;
+            Some((left.time(), place))
+        });
+        let times: Vec<(f64, usize)> = times.collect();
+        let &(first, place) = times.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let tied = times.iter().filter(|&&(time, place)| {
+            time == first
+                || self.left(place).is_some_and(|left| {
+                    let Left { distance, rate, unit } = left;
+                    distance - first * rate <= TIE * unit
+                })
+        });
+        let lowest = tied.map(|&(_, place)| place).min_by_key(|&place| self.rows[place].node);
+        Some((first, lowest.unwrap_or(place)))
+    }
+
+    fn left(&self, place: usize) -> Option<Left> {
+        let row = &self.rows[place];
+        let [dp, dgap] = self.rates(place);
+        Left::of(&self.law, row.state, [row.pressure, row.gap], [dp, dgap])
+    }
+
+    /// Whether the event that comes next to a row closes its gap.
+    pub(super) fn closes(&self, place: usize) -> bool {
+        self.rates(place)[1] < 0.0
+    }
+
+    /// Goes on along the parameter. Returns the energy that the traction of held nodes loses against their law, over
+    /// the area of a cell.
+    pub(super) fn advance(&mut self, step: f64) -> f64 {
+        let mut lost = 0.0;
+        for place in 0..self.size() {
+            let [dp, dgap] = self.rates(place);
+            let row = self.rows[place];
+            let [pressure, gap] = [row.pressure + step * dp, row.gap + step * dgap];
+            if row.state == NodeState::Held {
+                let change = self.law.energy(gap) - self.law.energy(row.gap);
+                lost -= change + 0.5 * (row.pressure + pressure) * (gap - row.gap);
+            }
+            self.rows[place] = Row { pressure, gap, ..row };
+        }
+        let rates = self.sum_rates();
+        self.sums.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += step * rate);
+        if let (Some(place), Some((_, pull))) = (self.carried, self.held.first_mut()) {
+            *pull = -self.rows[place].pressure;
+        }
+        lost
+    }
+
+    fn change(&mut self, place: usize, to: NodeState) {
+        let Row { node, state: from, .. } = self.rows[place];
+        self.changes.push(Change { node, from, to });
+        let row = &mut self.rows[place];
+        row.state = to;
+        match to {
+            NodeState::Open => row.pressure = 0.0,
+            NodeState::Cohesive => row.pressure = -self.law.stress(),
+            NodeState::Contact => row.gap = 0.0,
+            NodeState::Soft | NodeState::Held => {}
+        }
+        if from == NodeState::Contact {
+            self.contact_nodes -= 1;
+        } else if to == NodeState::Contact {
+            self.contact_nodes += 1;
+        }
+    }
+
+    /// Holds the traction of a row.
+    fn hold(&mut self, place: usize, pull: f64) {
+        self.change(place, NodeState::Held);
+        self.rows[place].pressure = -pull;
+        self.held.push((self.rows[place].node, pull));
+    }
+
+    fn note_pivot(&mut self, part: f64) {
+        self.is_worn |= part.abs() < SMALL_PIVOT;
+    }
+
+    /// Puts a row on the slope, or holds its traction if it is not stable there.
+    fn soften_or_hold(&mut self, place: usize, pull: f64) {
+        let softness = self.softness(place);
+        if softness < -LEAST_PIVOT {
+            self.note_pivot(softness);
+            self.soften(place);
+            self.change(place, NodeState::Soft);
+        } else {
+            self.hold(place, pull);
+        }
+    }
+
+    fn touch(&mut self, place: usize) {
+        let part = self.entry(place, place) / self.compliance();
+        self.note_pivot(part);
+        self.pivot(place);
+        self.change(place, NodeState::Contact);
+    }
+
+    /// Lets the next thing happen to a row.
+    pub(super) fn happen(&mut self, place: usize) {
+        let closes = self.closes(place);
+        let stress = self.law.stress();
+        let is_triangle = self.law.flat_range() == 0.0;
+        match self.rows[place].state {
+            NodeState::Open => self.soften_or_hold(place, 0.0),
+            NodeState::Soft => {
+                self.harden(place);
+                if !closes {
+                    self.change(place, NodeState::Open);
+                } else if is_triangle {
+                    self.rows[place].pressure = -stress;
+                    self.touch(place);
+                } else {
+                    self.change(place, NodeState::Cohesive);
+                }
+            }
+            NodeState::Cohesive if !closes => self.soften_or_hold(place, stress),
+            NodeState::Cohesive => self.touch(place),
+            NodeState::Held => {
+                let node = self.rows[place].node;
+                self.held.retain(|&(held, _)| held != node);
+                if self.carried == Some(place) {
+                    self.carried = None;
+                }
+                self.touch(place);
+            }
+            NodeState::Contact => self.part(place),
+        }
+    }
+
+    /// Opens a gap. Where others would not be stable then, the traction of those that it would change most is held
+    /// first.
+    fn part(&mut self, place: usize) {
+        // The pivot is the pressure that a gap there makes, and has to be positive.
+        let mut part = self.entry(place, place) * self.compliance();
+        while part.is_nan() || part <= LEAST_PIVOT {
+            let soft = (0..self.size()).filter(|&row| self.rows[row].state == NodeState::Soft);
+            let most = soft
+                .max_by(|&a, &b| self.entry(a, place).abs().total_cmp(&self.entry(b, place).abs()));
+            let Some(row) = most else {
+                break;
+            };
+            self.harden(row);
+            self.hold(row, -self.rows[row].pressure);
+            part = self.entry(place, place) * self.compliance();
+        }
+        self.note_pivot(part);
+        self.pivot(place);
+        let stress = self.law.stress();
+        self.rows[place].pressure = -stress;
+        if self.law.flat_range() == 0.0 {
+            self.soften_or_hold(place, stress);
+        } else {
+            self.change(place, NodeState::Cohesive);
+        }
+    }
+
+    /// How far the pull of the carried row may go before its own law, or an end of that, comes first; `None` once it is
+    /// back on its law, stable, or was none.
+    pub(super) fn carry(&mut self) -> Option<Carry> {
+        let place = self.carried?;
+        let law = self.law;
+        let (gap, pull) = (self.rows[place].gap, -self.rows[place].pressure);
+        let corner = CORNER * law.range();
+        let is_loading = self.sign > 0.0;
+        let on_slope = if is_loading {
+            gap <= law.range() + corner && gap > law.flat_range() + corner
+        } else {
+            gap >= law.flat_range() - corner && gap < law.range() - corner
+        };
+        let lag = self.sign * (law.pull(gap) - pull);
+        let gain = if on_slope { -self.softness(place) } else { 1.0 };
+        if lag <= 1e-10 * law.stress() && gain > 0.0 {
+            self.held.remove(0);
+            self.carried = None;
+            if on_slope {
+                self.note_pivot(gain);
+                self.soften(place);
+                self.change(place, NodeState::Soft);
+            } else if gap <= law.flat_range() + 2.0 * corner {
+                self.change(place, NodeState::Cohesive);
+            } else {
+                self.change(place, NodeState::Open);
+            }
+            return None;
+        }
+        let rate = self.rates(place)[1];
+        let corners = [law.flat_range(), law.range()].map(|level| (level - gap) / rate);
+        let corners = corners.into_iter().filter(|&step| step > corner / rate.abs());
+        Some(Carry {
+            corner: corners.fold(f64::INFINITY, f64::min),
+            law: if gain > 0.0 { lag / gain } else { f64::INFINITY },
+            end: (if is_loading { law.stress() - pull } else { pull }).max(0.0),
+        })
+    }
+
+    /// Lets go of the carried row at the end of the range of pulls, where it has passed the corner of its law.
+    pub(super) fn let_go(&mut self) {
+        if let Some(place) = self.carried.take() {
+            self.held.remove(0);
+            let to = if self.sign > 0.0 { NodeState::Cohesive } else { NodeState::Open };
+            self.change(place, to);
+        }
+    }
+
+    pub(super) fn law(&self) -> &CohesiveLaw {
+        &self.law
+    }
+
+    /// Whether the parameter is the pull of a row still.
+    pub(super) fn carries(&self) -> bool {
+        self.carried.is_some()
+    }
+
+    /// Nodes on the slope, and those pulled with the greatest stress; all of them are watched.
+    pub(super) fn pulled(&self) -> [usize; 2] {
+        [NodeState::Soft, NodeState::Cohesive]
+            .map(|state| self.rows.iter().filter(|row| row.state == state).count())
+    }
+
+    /// The energy of adhesion of all nodes over the area of a cell.
+    pub(super) fn energy(&self) -> f64 {
+        let pulled = self.rows.iter().map(|row| match row.state {
+            NodeState::Soft => -0.5 * row.pressure * row.pressure * self.compliance(),
+            NodeState::Cohesive | NodeState::Held => self.law.energy(row.gap),
+            NodeState::Open | NodeState::Contact => 0.0,
+        });
+        pulled.sum::<f64>() - self.law.work() * self.contact_nodes as f64
+    }
+}
+
+/// Steps of the pull of a row that is carried.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Carry {
+    /// To the next corner of its law.
+    pub(super) corner: f64,
+    /// To its law.
+    pub(super) law: f64,
+    /// To the greatest pull, or to none.
+    pub(super) end: f64,
+}
+
+/// What is left to the next event of a node: a distance, how fast it falls, and the unit of both.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Left {
+    distance: f64,
+    rate: f64,
+    unit: f64,
+}
+
+impl Left {
+    /// `None` if nothing happens to the node along these rates.
+    pub(super) fn of(
+        law: &CohesiveLaw,
+        state: NodeState,
+        [pressure, gap]: [f64; 2],
+        [dp, dgap]: [f64; 2],
+    ) -> Option<Self> {
+        let (flat, range) = (law.flat_range(), law.range());
+        let falls_to = |level: f64| Some([gap - level, -dgap]);
+        let rises_to = |level: f64| Some([level - gap, dgap]);
+        let [distance, rate] = match state {
+            NodeState::Open if dgap < 0.0 => falls_to(range),
+            NodeState::Soft if dgap < 0.0 => falls_to(flat),
+            NodeState::Soft if dgap > 0.0 => rises_to(range),
+            NodeState::Cohesive | NodeState::Held if dgap < 0.0 => falls_to(0.0),
+            NodeState::Cohesive if dgap > 0.0 => rises_to(flat),
+            NodeState::Contact if dp < 0.0 => {
+                let distance = pressure + law.stress();
+                return Some(Self { distance, rate: -dp, unit: law.stress() });
+            }
+            _ => None,
+        }?;
+        Some(Self { distance, rate, unit: range })
+    }
+
+    /// When.
+    pub(super) fn time(&self) -> f64 {
+        (self.distance / self.rate).max(0.0)
+    }
+}

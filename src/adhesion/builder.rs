@@ -1,0 +1,104 @@
+//! How a path with adhesion is set up.
+
+use std::sync::Arc;
+
+use super::front::Body;
+use super::law::Adhesion;
+use super::path::AdhesivePath;
+use super::state::Direction;
+use super::target::Targets;
+use crate::contact::{ContactState, ContactTarget};
+use crate::convolution::Convolution;
+use crate::error::AdhesionError;
+use crate::memory;
+use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface};
+
+/// Fields of the grid that a path holds.
+const FIELDS: usize = 24;
+
+/// The settings of an [`AdhesivePath`]; see [`AdhesivePath::builder`].
+#[allow(missing_debug_implementations)]
+#[must_use]
+pub struct AdhesiveBuilder<'a> {
+    surface: &'a dyn Surface,
+    kernel: &'a dyn InfluenceKernel,
+    law: Adhesion,
+    targets: Vec<ContactTarget>,
+    window_size: Option<usize>,
+    memory_budget: Option<usize>,
+}
+
+impl AdhesivePath {
+    /// Sets up the path of `surface` on the half-space of `kernel` with a law of adhesion.
+    pub fn builder<'a>(
+        surface: &'a dyn Surface,
+        kernel: &'a dyn InfluenceKernel,
+        law: Adhesion,
+    ) -> AdhesiveBuilder<'a> {
+        AdhesiveBuilder {
+            surface,
+            kernel,
+            law,
+            targets: Vec::new(),
+            window_size: None,
+            memory_budget: None,
+        }
+    }
+}
+
+impl AdhesiveBuilder<'_> {
+    /// Ends the branch of loading at a target, the first time that it is there: at exactly this load, approach or mean
+    /// gap, which may be negative for the first two; or with as many nodes in contact as fit into this fraction of the
+    /// area, or behind the jump that goes past it. Of several targets the first one reached counts. Without any it ends
+    /// in full contact.
+    pub fn until(mut self, target: ContactTarget) -> Self {
+        self.targets.push(target);
+        self
+    }
+
+    /// How many nodes to watch beside those that are pulled: as many events follow from one solution. By default 64, or
+    /// a quarter of the soft nodes. States do not depend on it, except by rounding. With 1 every event has a solution
+    /// of its own.
+    pub fn window_size(mut self, nodes: usize) -> Self {
+        self.window_size = Some(nodes);
+        self
+    }
+
+    /// Ends the path with an error before it holds more than this many bytes; by default three quarters of the
+    /// machine's memory, where the system tells it.
+    pub fn memory_budget(mut self, bytes: usize) -> Self {
+        self.memory_budget = Some(bytes);
+        self
+    }
+
+    /// Samples the surface, tabulates the kernel, and prepares the path before its first state.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Problem::new`] and of [`Adhesion::on`]; [`AdhesionError::GrowthUnknown`] for a kernel of
+    /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] and [`AdhesionError::Behind`] for targets that make no sense;
+    /// [`Error::MemoryBudget`] if not even the grid fits.
+    pub fn build(self) -> Result<AdhesivePath, Error> {
+        if self.window_size == Some(0) {
+            let (quantity, expected) = ("window size", "at least 1");
+            return Err(Error::OutOfRange { quantity, value: 0.0, expected });
+        }
+        let (grid, boundary) = (self.kernel.grid(), self.kernel.boundary());
+        let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
+        let fixed = Problem::bytes_on(&grid, boundary)
+            .saturating_add(Convolution::bytes_on(&grid, boundary))
+            .saturating_add(FIELDS * size_of::<f64>() * grid.nodes());
+        let left = budget.checked_sub(fixed);
+        let left = left.ok_or(Error::MemoryBudget { needed: fixed, budget, nodes_that_fit: 0 })?;
+        let problem = Problem::new(self.surface, self.kernel)?;
+        if problem.growth() == ContactGrowth::Unknown {
+            return Err(AdhesionError::GrowthUnknown.into());
+        }
+        let law = self.law.of(problem.table())?;
+        let targets = Targets::of(&self.targets, &problem.grid())?;
+        let (range, mean_gap) = (law.range(), problem.mean_gap());
+        let apart = ContactState::new(&problem.grid(), 0, -range, 0.0, mean_gap + range);
+        targets.check_ahead(&apart, Direction::Loading)?;
+        Ok(AdhesivePath::new(Body::new(Arc::new(problem), law, left), targets, self.window_size))
+    }
+}

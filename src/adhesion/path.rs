@@ -1,0 +1,401 @@
+//! The branches of a path with adhesion.
+
+use std::collections::VecDeque;
+use std::iter::FusedIterator;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use super::board::Change;
+use super::branch::AdhesiveBranch;
+use super::front::{Body, Field, Front};
+use super::law::CohesiveLaw;
+use super::moment::{Moment, Totals};
+use super::state::{AdhesiveEvent, AdhesiveState, Direction, NodeState};
+use super::target::Targets;
+use super::window::{self, Played};
+use crate::contact::{ContactState, ContactTarget};
+use crate::kernel::Gauge;
+use crate::{Error, Grid, Problem};
+
+/// Nodes that are watched beside those that are pulled: so many, or one for so many soft ones. On 128 × 128 nodes with
+/// up to 628 soft ones twice as many are as fast, and half as many take 1.2 times as long.
+const WATCHED: usize = 64;
+const SOFT_FOR_ONE: usize = 4;
+
+/// Why a branch has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum AdhesiveEnd {
+    /// The state that was asked for; the last state is there.
+    Target,
+    /// All nodes are in contact, or out of range.
+    NoMoreEvents,
+    /// The last item was an error.
+    Failed,
+}
+
+/// The path of a rigid rough surface that sticks to an elastic half-space: the branch of loading, and those of
+/// unloading and loading again from wherever it is turned around.
+///
+/// An iterator of [`AdhesiveState`] as [`LoadingPath`](crate::LoadingPath) is one of its states; see [the
+/// module](super).
+#[derive(Debug)]
+pub struct AdhesivePath {
+    pub(super) body: Body,
+    pub(super) front: Front,
+    /// Of the front, if it is known.
+    field: Option<Field>,
+    pub(super) direction: Direction,
+    pub(super) targets: Targets,
+    window_size: Option<usize>,
+    totals: Totals,
+    /// Within a jump the node that was unstable.
+    jump: Option<usize>,
+    queue: VecDeque<AdhesiveState>,
+    last: Option<AdhesiveState>,
+    end: Option<AdhesiveEnd>,
+    /// All that has happened to nodes, and for each state how much had and its approach in the gauge of the kernel.
+    log: Vec<Change>,
+    marks: Vec<(usize, f64)>,
+    timings: AdhesiveTimings,
+}
+
+/// How many windows a path took.
+#[doc(hidden)] // for the studies of this repository
+#[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
+pub struct AdhesiveTimings {
+    /// Windows that were kept.
+    pub windows: usize,
+    /// Windows that their end contradicted.
+    pub taken_back: usize,
+    /// Events of all kinds, those within jumps included.
+    pub events: usize,
+}
+
+/// Pressures and gaps of a state.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct AdhesiveFields {
+    /// Pressure \[Pa\], negative where the surfaces are pulled.
+    pub pressure: DMatrix<f64>,
+    /// Gap \[m\].
+    pub gap: DMatrix<f64>,
+    /// Where the nodes are on their law.
+    pub nodes: DMatrix<NodeState>,
+}
+
+impl AdhesivePath {
+    pub(super) fn new(body: Body, targets: Targets, window_size: Option<usize>) -> Self {
+        let nodes = vec![NodeState::Open; body.problem.initial_gap().len()];
+        // Out of range but for rounding: the highest node comes into it first.
+        let approach = -body.law.range();
+        Self {
+            front: Front { nodes, approach, held: Vec::new() },
+            body,
+            field: None,
+            direction: Direction::Loading,
+            targets,
+            window_size,
+            totals: Totals::default(),
+            jump: None,
+            queue: VecDeque::new(),
+            last: None,
+            end: None,
+            log: Vec::new(),
+            marks: Vec::new(),
+            timings: AdhesiveTimings::default(),
+        }
+    }
+
+    /// Turns around, or goes on, and lets the approach fall from the present state, the last one yielded, until no node
+    /// is pulled any more.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::CannotContinue`] after an error, and those of the updater.
+    pub fn unload(&mut self) -> Result<(), Error> {
+        self.turn(Direction::Unloading, Targets::default())
+    }
+
+    /// The same until a target.
+    ///
+    /// # Errors
+    ///
+    /// [`AdhesionError::Behind`] for a target on the other side of the present state, and those of [`Self::unload`].
+    pub fn unload_to(&mut self, target: ContactTarget) -> Result<(), Error> {
+        let targets = Targets::of(&[target], &self.grid())?;
+        self.turn(Direction::Unloading, targets)
+    }
+
+    /// Lets the approach grow from the present state, the last one yielded, to a target.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::unload_to`].
+    pub fn load_to(&mut self, target: ContactTarget) -> Result<(), Error> {
+        let targets = Targets::of(&[target], &self.grid())?;
+        self.turn(Direction::Loading, targets)
+    }
+
+    /// All states to come, up to the end of the branch.
+    ///
+    /// # Errors
+    ///
+    /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate
+    /// to keep them.
+    pub fn run(&mut self) -> Result<AdhesiveBranch, Error> {
+        self.by_ref().collect()
+    }
+
+    fn turn(&mut self, direction: Direction, targets: Targets) -> Result<(), Error> {
+        if self.end == Some(AdhesiveEnd::Failed) {
+            return Err(Error::CannotContinue { steps: self.last.map_or(0, |state| state.step) });
+        }
+        if let Some(state) = &self.last {
+            targets.check_ahead(&state.contact, direction)?;
+        }
+        self.go_back()?;
+        self.direction = direction;
+        self.targets = targets;
+        self.field = None;
+        self.end = None;
+        Ok(())
+    }
+
+    /// Goes back to the last state yielded, if more are computed.
+    fn go_back(&mut self) -> Result<(), Error> {
+        if self.queue.is_empty() && self.jump.is_none() {
+            return Ok(());
+        }
+        self.queue.clear();
+        self.jump = None;
+        let step = self.last.map_or(0, |state| state.step);
+        self.front = self.front_at(step);
+        self.marks.truncate(step);
+        self.log.truncate(self.marks.last().map_or(0, |mark| mark.0));
+        self.totals = self.last.map_or(Totals::default(), |state| Totals {
+            work: self.gauge().work(state.work, state.contact.load),
+            dissipated: state.dissipated,
+        });
+        self.body.follow(&self.front)
+    }
+
+    /// Where the path was after so many states.
+    fn front_at(&self, step: usize) -> Front {
+        let start = (0, -self.body.law.range());
+        let (changes, approach) = step.checked_sub(1).map_or(start, |last| self.marks[last]);
+        let mut nodes = self.front.nodes.clone();
+        for change in self.log[changes..].iter().rev() {
+            nodes[change.node] = change.from;
+        }
+        Front { nodes, approach, held: Vec::new() }
+    }
+
+    /// Pressures, gaps and nodes on their law at a state of this path. The present state costs a solution, others a
+    /// factor as well: n³/3 flops for n nodes in contact.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StateNotReached`] for a state that this path has not had, or has gone back behind, and those of the
+    /// updater.
+    pub fn fields_at(&self, state: &AdhesiveState) -> Result<AdhesiveFields, Error> {
+        let present = self.last.map_or(0, |last| last.step);
+        if state.step == 0 || state.step > present {
+            return Err(Error::StateNotReached { step: state.step, present });
+        }
+        let front = self.front_at(state.step);
+        let mut body = Body::new(Arc::clone(&self.body.problem), self.body.law, self.body.budget);
+        body.follow(&front)?;
+        let field = body.survey(&front, self.direction.sign())?;
+        let (nx, ny) = self.grid().shape();
+        let [[pressure, _], [gap, _]] = [field.pressure, field.gap];
+        Ok(AdhesiveFields {
+            pressure: DMatrix::from_vec(nx, ny, pressure),
+            gap: DMatrix::from_vec(nx, ny, gap),
+            nodes: DMatrix::from_vec(nx, ny, front.nodes),
+        })
+    }
+
+    /// The contact problem.
+    #[must_use]
+    pub fn problem(&self) -> &Problem {
+        &self.body.problem
+    }
+
+    /// The law of adhesion on these cells.
+    #[must_use]
+    pub fn law(&self) -> CohesiveLaw {
+        self.body.law
+    }
+
+    /// The grid.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.body.problem.grid()
+    }
+
+    /// The present state: the last one yielded, `None` before the first.
+    #[must_use]
+    pub fn state(&self) -> Option<AdhesiveState> {
+        self.last
+    }
+
+    /// Why the branch has ended; `None` while there is more to come.
+    #[must_use]
+    pub fn end(&self) -> Option<AdhesiveEnd> {
+        self.end
+    }
+
+    /// How many windows and events the path took.
+    #[doc(hidden)] // for the studies of this repository
+    #[must_use]
+    pub fn timings(&self) -> AdhesiveTimings {
+        self.timings
+    }
+
+    pub(super) fn gauge(&self) -> GaugeOfPath {
+        GaugeOfPath(self.body.problem.table().gauge_per_load())
+    }
+
+    fn push(&mut self, event: AdhesiveEvent, node: usize, moment: &Moment, changes: usize) {
+        let area = self.grid().cell_area();
+        let is_apart = moment.contact_nodes == 0 && moment.pulled == [0, 0];
+        let has_distant_point = self.body.problem.table().gauge().is_none();
+        let [[pressures, pressure_rate], [gaps, gap_rate]] = moment.sums;
+        // By identity and not by arithmetic.
+        let [pressures, pressure_rate] =
+            if is_apart { [0.0; 2] } else { [pressures, pressure_rate] };
+        let is_full = moment.contact_nodes == self.grid().nodes();
+        let [gaps, gap_rate] = if is_full { [0.0; 2] } else { [gaps, gap_rate] };
+        let (nodes, load) = (self.grid().nodes() as f64, area * pressures);
+        let gauge = self.gauge();
+        let adhesive_energy = area * moment.energy;
+        let Totals { work, dissipated } = moment.totals;
+        let elastic = work - dissipated - adhesive_energy;
+        let approach = gauge.0.reported_approach(moment.approach, load);
+        // Per unit of approach, whichever way that goes.
+        let stiffness = area * pressure_rate * self.direction.sign();
+        let interfacial = -area * pressure_rate / (gap_rate / nodes);
+        let contact = ContactState {
+            contact_stiffness: Some(stiffness).filter(|_| has_distant_point),
+            interfacial_stiffness: Some(if is_full { f64::INFINITY } else { interfacial }),
+            energy: gauge.0.reported_energy(elastic, load),
+            ..ContactState::new(&self.grid(), moment.contact_nodes, approach, load, gaps / nodes)
+        };
+        let [soft_nodes, cohesive_nodes] = moment.pulled;
+        self.marks.push((changes, moment.approach));
+        let mut state = AdhesiveState {
+            step: self.marks.len(),
+            direction: self.direction,
+            event,
+            node: self.grid().coordinates(node),
+            contact,
+            soft_nodes,
+            cohesive_nodes,
+            adhesive_energy,
+            dissipated,
+            work: gauge.0.reported_energy(work, load),
+        };
+        if event == AdhesiveEvent::Limit {
+            self.targets.place(&mut state.contact);
+        }
+        self.queue.push_back(state);
+    }
+
+    fn advance(&mut self) -> Result<Option<AdhesiveState>, Error> {
+        while self.queue.is_empty() {
+            if self.end.is_some() {
+                return Ok(None);
+            }
+            self.window()?;
+        }
+        self.last = self.queue.pop_front();
+        let is_jumped = |state: &AdhesiveState| {
+            matches!(state.event, AdhesiveEvent::JumpEnd | AdhesiveEvent::Part)
+                && self.targets.is_past(&state.contact, self.direction)
+        };
+        if self.queue.is_empty() && self.last.as_ref().is_some_and(is_jumped) {
+            self.end = Some(AdhesiveEnd::Target);
+        }
+        Ok(self.last)
+    }
+
+    /// Follows the events of one window.
+    fn window(&mut self) -> Result<(), Error> {
+        let sign = self.direction.sign();
+        let field = match self.field.take() {
+            Some(field) => field,
+            None => self.body.survey(&self.front, sign)?,
+        };
+        if self.front.held.is_empty()
+            && let Some(node) = self.jump.take()
+        {
+            let moment = Moment::of(&self.body.law, &self.front, &field, self.totals);
+            self.push(AdhesiveEvent::JumpEnd, node, &moment, self.log.len());
+            self.field = Some(field);
+            return Ok(());
+        }
+        let view = window::View {
+            direction: self.direction,
+            targets: &self.targets,
+            gauge: self.body.problem.table().gauge_per_load(),
+            totals: self.totals,
+            last_node: self.log.last().map_or(0, |change| change.node),
+        };
+        // What a window costs grows with the soft nodes.
+        let automatic = WATCHED.max(self.body.soft().len() / SOFT_FOR_ONE);
+        let size = self.window_size.unwrap_or(automatic);
+        let found = window::follow(&mut self.body, &self.front, &field, &view, size)?;
+        let Some(Played { front, field, moments, changes, totals, jump, is_at_limit, taken_back }) =
+            found
+        else {
+            self.end = Some(AdhesiveEnd::NoMoreEvents);
+            return Ok(());
+        };
+        self.timings.windows += 1;
+        self.timings.taken_back += taken_back;
+        self.timings.events += changes.len();
+        let before = self.log.len();
+        self.log.extend(changes);
+        for (event, node, moment, changes) in &moments {
+            self.push(*event, *node, moment, before + changes);
+        }
+        self.front = front;
+        self.field = Some(field);
+        self.totals = totals;
+        self.jump = self.jump.or(jump);
+        if is_at_limit {
+            self.end = Some(AdhesiveEnd::Target);
+        }
+        Ok(())
+    }
+}
+
+/// What the gauge of a periodic kernel makes of work.
+pub(super) struct GaugeOfPath(Gauge);
+
+impl GaugeOfPath {
+    /// ∫ W dδ in the gauge of the kernel, from that about the mean planes.
+    fn work(&self, reported: f64, load: f64) -> f64 {
+        reported + (reported - self.0.reported_energy(reported, load))
+    }
+}
+
+impl Iterator for AdhesivePath {
+    type Item = Result<AdhesiveState, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.end == Some(AdhesiveEnd::Failed) {
+            return None;
+        }
+        let item = self.advance();
+        if item.is_err() {
+            self.end = Some(AdhesiveEnd::Failed);
+        }
+        item.transpose()
+    }
+}
+
+impl FusedIterator for AdhesivePath {}

@@ -1,0 +1,164 @@
+//! Where a branch is to end.
+
+use super::state::Direction;
+use crate::contact::{ContactState, ContactTarget};
+use crate::error::AdhesionError;
+use crate::kernel::Gauge;
+use crate::{Error, Grid};
+
+/// Where a branch is to end, the first of several.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Targets {
+    /// None of them a mean pressure, which is a load.
+    targets: Vec<ContactTarget>,
+    /// Nodes that fit into the least fraction of the area that was asked for.
+    nodes: Option<usize>,
+}
+
+/// What a target is compared with, and its rates along the approach in the direction of the branch.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Measured {
+    /// In the gauge of the kernel.
+    pub(super) approach: f64,
+    pub(super) load: [f64; 2],
+    pub(super) mean_gap: [f64; 2],
+    /// A stiffness that rates of loads are rounding to \[N/m\].
+    pub(super) stiffness: f64,
+}
+
+/// Rates below this part of those of a free surface are rounding: in full contact mean planes of a periodic half-space
+/// do not approach.
+const LEAST_RATE: f64 = 1e-11;
+
+impl Targets {
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for what is not finite, and for a fraction that is none.
+    pub(super) fn of(targets: &[ContactTarget], grid: &Grid) -> Result<Self, Error> {
+        let mut nodes: Option<usize> = None;
+        let mut own = Vec::with_capacity(targets.len());
+        for &target in targets {
+            let (quantity, value) = match target {
+                ContactTarget::AreaFraction(fraction) => {
+                    let fit = grid.nodes_in(fraction)?;
+                    nodes = Some(nodes.map_or(fit, |nodes| nodes.min(fit)));
+                    own.push(target);
+                    continue;
+                }
+                ContactTarget::Load(load) => ("load at which a branch ends", load),
+                ContactTarget::MeanPressure(p) => ("mean pressure at which a branch ends", p),
+                ContactTarget::Approach(approach) => ("approach at which a branch ends", approach),
+                ContactTarget::MeanGap(gap) => ("mean gap at which a branch ends", gap),
+            };
+            if !value.is_finite() {
+                return Err(Error::OutOfRange { quantity, value, expected: "finite" });
+            }
+            own.push(match target {
+                ContactTarget::MeanPressure(p) => ContactTarget::Load(p * grid.nominal_area()),
+                target => target,
+            });
+        }
+        Ok(Self { targets: own, nodes })
+    }
+
+    /// `Ok` if all lie ahead of a state.
+    pub(super) fn check_ahead(
+        &self,
+        state: &ContactState,
+        direction: Direction,
+    ) -> Result<(), Error> {
+        let sign = direction.sign();
+        for target in &self.targets {
+            let (quantity, value, present, way) = match *target {
+                ContactTarget::Load(load) => ("load", load, state.load, sign),
+                ContactTarget::Approach(approach) => ("approach", approach, state.approach, sign),
+                ContactTarget::MeanGap(gap) => ("mean gap", gap, state.mean_gap, -sign),
+                ContactTarget::MeanPressure(_) => continue,
+                ContactTarget::AreaFraction(fraction) => {
+                    ("contact area fraction", fraction, state.contact_area_fraction, sign)
+                }
+            };
+            let is_apart = state.load == 0.0 && direction == Direction::Loading;
+            if way * (value - present) < 0.0 && !(quantity == "load" && is_apart) {
+                return Err(AdhesionError::Behind { quantity, value, present }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// When the first is reached that is not an area; infinity if none is as long as nothing happens.
+    pub(super) fn time(&self, gauge: Gauge, measured: &Measured, direction: Direction) -> f64 {
+        let sign = direction.sign();
+        let Measured { approach, load: [load, load_rate], mean_gap: [gap, gap_rate], stiffness } =
+            *measured;
+        let times = self.targets.iter().map(|target| {
+            let (left, rate, unit) = match *target {
+                // Whether it rises or falls.
+                ContactTarget::Load(to) => {
+                    ((to - load).abs(), (to - load).signum() * load_rate, stiffness)
+                }
+                ContactTarget::Approach(to) => (
+                    sign * (to - gauge.reported_approach(approach, load)),
+                    1.0 - sign * gauge.displacement(load_rate),
+                    1.0,
+                ),
+                ContactTarget::MeanGap(to) => (sign * (gap - to), -sign * gap_rate, 1.0),
+                ContactTarget::AreaFraction(_) | ContactTarget::MeanPressure(_) => {
+                    return f64::INFINITY;
+                }
+            };
+            if left == 0.0 {
+                0.0
+            } else if left > 0.0 && rate > LEAST_RATE * unit {
+                left / rate
+            } else {
+                f64::INFINITY
+            }
+        });
+        times.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether one more node in contact would be too many.
+    pub(super) fn is_full(&self, contact_nodes: usize, direction: Direction) -> bool {
+        direction == Direction::Loading && self.nodes.is_some_and(|nodes| contact_nodes >= nodes)
+    }
+
+    /// Whether unloading has come down to an area.
+    pub(super) fn is_reached(&self, contact_nodes: usize, direction: Direction) -> bool {
+        direction == Direction::Unloading && self.nodes.is_some_and(|nodes| contact_nodes <= nodes)
+    }
+
+    /// Whether a state is beyond a target: behind a jump, in which all but the load goes the way of the branch, or once
+    /// unloading has come down to an area.
+    pub(super) fn is_past(&self, state: &ContactState, direction: Direction) -> bool {
+        let is_beyond = |target: &ContactTarget| match *target {
+            ContactTarget::Load(_) | ContactTarget::MeanPressure(_) => false,
+            ContactTarget::Approach(to) => direction.sign() * (state.approach - to) > 0.0,
+            ContactTarget::MeanGap(gap) => direction.sign() * (gap - state.mean_gap) > 0.0,
+            ContactTarget::AreaFraction(_) => {
+                direction == Direction::Loading
+                    && self.nodes.is_some_and(|nodes| state.contact_nodes > nodes)
+            }
+        };
+        self.is_reached(state.contact_nodes, direction) || self.targets.iter().any(is_beyond)
+    }
+
+    /// Gives a state at a target the very value that was asked for.
+    pub(super) fn place(&self, state: &mut ContactState) {
+        let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= 1e-12 * unit;
+        for target in &self.targets {
+            match *target {
+                ContactTarget::Load(load) if is_near(load, state.load, load.abs()) => {
+                    state.load = load
+                }
+                ContactTarget::Approach(to) if is_near(to, state.approach, to.abs()) => {
+                    state.approach = to;
+                }
+                ContactTarget::MeanGap(gap) if is_near(gap, state.mean_gap, gap.abs()) => {
+                    state.mean_gap = gap;
+                }
+                _ => {}
+            }
+        }
+    }
+}

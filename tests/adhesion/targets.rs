@@ -1,0 +1,176 @@
+//! Ends of branches, reversals, and what is refused.
+
+use asperity::adhesion::{
+    Adhesion, AdhesiveEnd, AdhesiveEvent, AdhesivePath, AdhesiveState, Direction,
+};
+use asperity::surface::{Amplitude, SelfAffine};
+use asperity::{
+    AdhesionError, Boundary, Boussinesq, ContactGrowth, ContactTarget, Error, Grid,
+    InfluenceKernel, KernelTable, LoadingSolver,
+};
+
+fn kernel() -> Boussinesq {
+    Boussinesq::new(Grid::square(20, 1.0).unwrap(), 1.0).unwrap()
+}
+
+fn surface() -> SelfAffine {
+    SelfAffine::new(0.8, 0.5, 0.25, Amplitude::RmsHeight(0.02), 5).unwrap()
+}
+
+fn path(target: Option<ContactTarget>) -> AdhesivePath {
+    let (surface, kernel) = (surface(), kernel());
+    let builder = AdhesivePath::builder(&surface, &kernel, Adhesion::work(1e-3));
+    let builder = target.into_iter().fold(builder, |builder, target| builder.until(target));
+    builder.build().unwrap()
+}
+
+fn run(path: &mut AdhesivePath) -> Vec<AdhesiveState> {
+    path.by_ref().map(|state| state.unwrap()).collect()
+}
+
+/// A branch ends at exactly what was asked for, negative loads and approaches too, and goes on from there as if nothing
+/// had been.
+#[test]
+fn branches_end_at_their_targets() {
+    let whole = run(&mut path(None));
+    assert_eq!(whole.last().unwrap().contact.contact_area_fraction, 1.0);
+    let most = whole.last().unwrap().contact.load;
+    let gap = 0.5 * whole[0].contact.mean_gap;
+    let targets = [
+        ContactTarget::Load(-2e-4),
+        ContactTarget::Load(0.25 * most),
+        ContactTarget::Approach(-0.012),
+        ContactTarget::Approach(0.01),
+        ContactTarget::MeanGap(gap),
+    ];
+    for target in targets {
+        let mut path = path(Some(target));
+        let states = run(&mut path);
+        let last = states.last().unwrap();
+        assert_eq!(
+            (path.end(), last.event),
+            (Some(AdhesiveEnd::Target), AdhesiveEvent::Limit),
+            "{target:?}"
+        );
+        let (found, asked) = match target {
+            ContactTarget::Load(load) => (last.contact.load, load),
+            ContactTarget::Approach(approach) => (last.contact.approach, approach),
+            ContactTarget::MeanGap(gap) => (last.contact.mean_gap, gap),
+            _ => unreachable!(),
+        };
+        assert_eq!(found, asked);
+        // Then the same events as without a stop.
+        path.load_to(ContactTarget::AreaFraction(1.0)).unwrap();
+        let later = run(&mut path);
+        assert_eq!(states.len() - 1 + later.len(), whole.len(), "{target:?}");
+        for (state, expected) in
+            states.iter().filter(|s| s.event != AdhesiveEvent::Limit).chain(&later).zip(&whole)
+        {
+            assert_eq!((state.event, state.node), (expected.event, expected.node));
+            assert!((state.contact.load - expected.contact.load).abs() < 1e-10 * most);
+        }
+    }
+}
+
+/// As many nodes as fit, or those behind the jump that goes past; on unloading the first state with no more.
+#[test]
+fn areas_of_both_branches() {
+    let mut path = path(Some(ContactTarget::AreaFraction(0.3)));
+    let states = run(&mut path);
+    assert_eq!(path.end(), Some(AdhesiveEnd::Target));
+    let last = states.last().unwrap();
+    assert!(last.contact.contact_nodes >= 120, "{last:?}");
+    assert!(last.contact.contact_nodes == 120 || last.event == AdhesiveEvent::JumpEnd);
+    path.unload_to(ContactTarget::AreaFraction(0.1)).unwrap();
+    let states = run(&mut path);
+    let [.., before, last] = &states[..] else { panic!() };
+    assert!(
+        last.contact.contact_nodes <= 40 && before.contact.contact_nodes > 40,
+        "{before:?} {last:?}"
+    );
+    assert_eq!(last.direction, Direction::Unloading);
+}
+
+/// A path that is turned around in the midst of a window goes back to the state that was yielded last.
+#[test]
+fn a_path_turns_where_it_is() {
+    for steps in [3, 57, 150] {
+        let mut early = path(None);
+        let states: Vec<_> = early.by_ref().take(steps).map(|state| state.unwrap()).collect();
+        let here = states.last().unwrap();
+        early.unload().unwrap();
+        let back = run(&mut early);
+        let mut stopped = path(Some(ContactTarget::Approach(here.contact.approach)));
+        run(&mut stopped);
+        stopped.unload().unwrap();
+        let expected = run(&mut stopped);
+        let [back, expected] = [&back, &expected].map(|states| *states.last().unwrap());
+        assert_eq!((back.contact.load, expected.contact.load), (0.0, 0.0));
+        let unit = 1e-3;
+        assert!((back.dissipated - expected.dissipated).abs() < 1e-12 * unit, "{steps}");
+        assert!((back.work - expected.work).abs() < 1e-12 * unit, "{steps}");
+        assert!((back.contact.approach - expected.contact.approach).abs() < 1e-15);
+    }
+}
+
+/// Little adhesion changes little: load and area at an approach are those of the elastic path, to what so small a
+/// stress can carry.
+#[test]
+fn little_adhesion_is_none() {
+    let (surface, kernel) = (surface(), kernel());
+    let elastic = LoadingSolver::builder(&surface, &kernel).max_approach(0.02).build().unwrap();
+    let elastic = elastic.map(|state| state.unwrap()).last().unwrap();
+    let law = Adhesion::work(1e-18);
+    let builder = AdhesivePath::builder(&surface, &kernel, law);
+    let mut path = builder.until(ContactTarget::Approach(0.02)).build().unwrap();
+    let last = *run(&mut path).last().unwrap();
+    let stress = path.law().stress();
+    assert!(stress < 1e-4 * elastic.contact.load);
+    assert!((last.contact.load - elastic.contact.load).abs() < 10.0 * stress);
+    assert_eq!(last.contact.contact_nodes, elastic.contact.contact_nodes);
+}
+
+#[test]
+fn what_is_refused() {
+    let (surface, kernel) = (surface(), kernel());
+    let law = Adhesion::work(1e-3);
+    let unknown =
+        KernelTable::from_fn(kernel.grid(), Boundary::Free, ContactGrowth::Unknown, |di, dj| {
+            kernel.coefficient(di, dj)
+        });
+    let refused = AdhesivePath::builder(&surface, &unknown.unwrap(), law).build();
+    assert!(matches!(refused, Err(Error::Adhesion(AdhesionError::GrowthUnknown))));
+    let refused = AdhesivePath::builder(&surface, &kernel, law.range(1e-3)).build();
+    assert!(matches!(refused, Err(Error::Adhesion(AdhesionError::Unresolved { .. }))));
+    for (window, memory) in [(0, usize::MAX), (1, 1000)] {
+        let builder = AdhesivePath::builder(&surface, &kernel, law).window_size(window);
+        assert!(builder.memory_budget(memory).build().is_err());
+    }
+    let mut path = path(Some(ContactTarget::Load(1e-3)));
+    run(&mut path);
+    for refused in
+        [path.unload_to(ContactTarget::Load(2e-3)), path.load_to(ContactTarget::Approach(-1.0))]
+    {
+        assert!(
+            matches!(refused, Err(Error::Adhesion(AdhesionError::Behind { .. }))),
+            "{refused:?}"
+        );
+    }
+    assert!(path.load_to(ContactTarget::Load(f64::NAN)).is_err());
+    // A mean pressure is a load.
+    let mut path = AdhesivePath::builder(&surface, &kernel, law)
+        .until(ContactTarget::MeanPressure(1e-3))
+        .build()
+        .unwrap();
+    let last = path.run().unwrap().states().last().copied().unwrap();
+    assert_eq!(last.contact.load, 1e-3 * kernel.grid().nominal_area());
+    // A budget that the factor outgrows ends the path with what fits, and nothing goes on behind it.
+    let fixed = 24 * 8 * 400;
+    let builder = AdhesivePath::builder(&surface, &kernel, law).memory_budget(fixed + 1_200_000);
+    let mut path = builder.build().unwrap();
+    let error = path.by_ref().find_map(Result::err);
+    assert!(matches!(error, Some(Error::MemoryBudget { .. })), "{error:?}");
+    assert_eq!(path.end(), Some(AdhesiveEnd::Failed));
+    assert!(path.next().is_none());
+    assert!(matches!(path.unload(), Err(Error::CannotContinue { .. })));
+}
