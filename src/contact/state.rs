@@ -38,7 +38,7 @@ pub struct ContactState {
     /// Elastic energy `U = ½ ΔA Σ p u` \[J\], which comes back on unloading. Where nothing yields it is `∫ W dδ`.
     pub energy: f64,
     /// What has yielded, with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one. A single load gives its fields
-    /// too ([`FixedLoadSolution::plastic`](crate::FixedLoadSolution::plastic)).
+    /// too ([`ContactFields`](crate::contact::ContactFields)).
     pub plastic: Option<PlasticState>,
 }
 
@@ -62,7 +62,7 @@ pub struct PlasticState {
     pub work_per_load: f64,
     /// Normal stiffness dW/dδ on *unloading* \[N/m\]: of all nodes in contact, also those that have yielded. It is what conducts. `None` on a
     /// periodic half-space, and unless it was asked for:
-    /// [`LoadingSolver::add_unloading_stiffness`](crate::LoadingSolver::add_unloading_stiffness).
+    /// [`LoadingPath::add_unloading_stiffness`](crate::LoadingPath::add_unloading_stiffness).
     pub contact_unloading_stiffness: Option<f64>,
     /// The same for the interfacial stiffness −dW/dḡ \[N/m\]: infinite in full contact. `None` unless it was asked for.
     pub interfacial_unloading_stiffness: Option<f64>,

@@ -27,7 +27,7 @@ pub struct FixedLoadBuilder<'a> {
 }
 
 impl<'a> FixedLoadBuilder<'a> {
-    /// Greatest pressure H \[Pa\]: nodes that reach it yield, and [`FixedLoadSolution::plastic`](super::FixedLoadSolution::plastic)
+    /// Greatest pressure H \[Pa\]: nodes that reach it yield, and [`FixedLoadSolution::fields`](super::FixedLoadSolution::fields)
     /// has what stays of them. Infinity, as by default, is elastic contact.
     ///
     /// A solution takes some ten elastic ones, and states are not continued from each other. A load of H times the nominal area or

@@ -115,7 +115,7 @@ impl Conduction {
     /// [`KernelOrigin::layering`](crate::kernel::KernelOrigin::layering) say which body it is.
     ///
     /// Nodes that have yielded conduct as well: with a hardness it takes the stiffness on *unloading*, of all nodes in contact, which
-    /// [`LoadingSolver::add_unloading_stiffness`](crate::LoadingSolver::add_unloading_stiffness) and
+    /// [`LoadingPath::add_unloading_stiffness`](crate::LoadingPath::add_unloading_stiffness) and
     /// [`FixedLoadSolver::add_unloading_stiffness`](crate::FixedLoadSolver::add_unloading_stiffness) add to states.
     ///
     /// # Errors

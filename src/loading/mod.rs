@@ -127,4 +127,7 @@ pub use run::LoadingTimings;
 pub use solver::LoadingSolver;
 pub use state::{ContactEvent, LoadingState};
 #[cfg(feature = "io")]
-pub(crate) use window_end::{FactorEnd, NextWindow, WindowEnd};
+pub(crate) use window_end::FactorEnd;
+pub(crate) use window_end::NextWindow;
+#[cfg(any(test, feature = "io"))]
+pub(crate) use window_end::WindowEnd;

@@ -26,7 +26,7 @@ use crate::{Error, Problem};
 ///
 /// Events are the same before and after; before, states are exact to rounding, and after it as
 /// [`loading`](crate::loading) says. A message of the level `info` goes to the crate `log`, and
-/// [`LoadingSolver::handed_over_at`](crate::LoadingSolver::handed_over_at) says where it was. For a path exact to rounding whatever
+/// [`LoadingPath::handed_over_at`](crate::LoadingPath::handed_over_at) says where it was. For a path exact to rounding whatever
 /// it costs, take [`RecursiveCholesky`] itself.
 ///
 /// ```
