@@ -1,7 +1,7 @@
 //! Time of whole paths, of a pressure on demand, and of a table of influence coefficients.
 //!
-//! Throughput of a path of n nodes is in n³/3 floating-point operations, those of the Cholesky
-//! factorisation of its last contact set. `cargo bench -p asperity-benches --bench path -- sphere/256` runs some of them.
+//! Throughput of a path of n nodes is in n³/3 floating-point operations, those of the Cholesky factorisation of its
+//! last contact set. `cargo bench -p asperity-benches --bench path -- sphere/256` runs some of them.
 
 use std::error::Error;
 use std::time::Duration;

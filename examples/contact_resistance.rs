@@ -5,8 +5,8 @@
 //! it is that of the interfacial stiffness: what the interface adds to bodies with a uniform current. Put thermal
 //! resistivities \[m K/W\] in, and thermal resistances come out.
 //!
-//! A surface that has more roughness than the grid, of a known height, has a resistance between two bounds. The last lines are a table of
-//! the same interface for a finite element program.
+//! A surface that has more roughness than the grid, of a known height, has a resistance between two bounds. The last
+//! lines are a table of the same interface for a finite element program.
 //!
 //! ```text
 //! cargo run --release --example contact_resistance

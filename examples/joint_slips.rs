@@ -1,8 +1,8 @@
 //! How much does my joint give way under a tangential load, and how much energy does each cycle cost?
 //!
-//! One path of normal loading answers for every tangential load: nodes under low pressure slip long before the joint slides as a
-//! whole. The dissipation is that of a steady cycle, and needs some 50 slipping nodes to be one of the surface rather than of the
-//! grid.
+//! One path of normal loading answers for every tangential load: nodes under low pressure slip long before the joint
+//! slides as a whole. The dissipation is that of a steady cycle, and needs some 50 slipping nodes to be one of the
+//! surface rather than of the grid.
 //!
 //! ```text
 //! cargo run --release --example joint_slips

@@ -1,8 +1,8 @@
 //! How much of my metal joint yields, and what is left of its roughness after unloading?
 //!
-//! Cells yield where the pressure reaches the hardness H: perfectly plastic, without hardening, and each loses height where it is (no
-//! volume moves to its neighbours). Compare H with E* times the rms gradient: far below, nearly all of the contact yields, and its area
-//! is the load over H; far above, nothing does.
+//! Cells yield where the pressure reaches the hardness H: perfectly plastic, without hardening, and each loses height
+//! where it is (no volume moves to its neighbours). Compare H with E* times the rms gradient: far below, nearly all of
+//! the contact yields, and its area is the load over H; far above, nothing does.
 //!
 //! ```text
 //! cargo run --release --example metals_yield

@@ -1,10 +1,10 @@
-//! How does a rubber seal creep under its load: when is the last channel closed, what load is left if it is clamped at one approach, and
-//! what does it lose under vibration?
+//! How does a rubber seal creep under its load: when is the last channel closed, what load is left if it is clamped at
+//! one approach, and what does it lose under vibration?
 //!
 //! The path is elastic, of the modulus at once. Everything over time follows from it without another solution.
 //!
-//! Pictures of such a path: `asperity path --material rubber --periodic love --max-area-fraction 0.6 --record rubber.npz`, then
-//! `asperity creep rubber.npz --prony 0.1,0.3 10,0.5 --load 1 --time 1e4`.
+//! Pictures of such a path: `asperity path --material rubber --periodic love --max-area-fraction 0.6 --record
+//! rubber.npz`, then `asperity creep rubber.npz --prony 0.1,0.3 10,0.5 --load 1 --time 1e4`.
 //!
 //! ```text
 //! cargo run --release --example rubber_creeps

@@ -1,7 +1,8 @@
 //! How much leaks through my seal, and how hard must I press until it does not matter?
 //!
-//! Reynolds' equation on the gap of each state: a fluid is pressed from one edge of the surface to the opposite one, and contact is closed.
-//! Leak rates fall by many decades before the last channel closes, and one constriction takes more and more of the pressure drop.
+//! Reynolds' equation on the gap of each state: a fluid is pressed from one edge of the surface to the opposite one,
+//! and contact is closed. Leak rates fall by many decades before the last channel closes, and one constriction takes
+//! more and more of the pressure drop.
 //!
 //! Pictures of such a path: `asperity path --periodic love --max-area-fraction 0.6 --record path.npz`, then
 //! `asperity leak path.npz --viscosity 1e-3 --pressure-drop 1e5 --along x`.

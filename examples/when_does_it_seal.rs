@@ -1,7 +1,7 @@
 //! How hard must I press until nothing leaks through?
 //!
-//! The last channel from end to end closes when patches of contact have joined all the way across it, through corners too: channels pass through
-//! sides of cells, as a leak does. Around the periodic grid it closes no later.
+//! The last channel from end to end closes when patches of contact have joined all the way across it, through corners
+//! too: channels pass through sides of cells, as a leak does. Around the periodic grid it closes no later.
 //!
 //! Pictures of such a path: `asperity path --periodic love --max-area-fraction 0.6 --record path.npz`, then
 //! `asperity patches path.npz`.

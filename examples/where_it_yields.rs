@@ -1,7 +1,7 @@
 //! Where does my contact begin to yield, under which load, and what does sliding change?
 //!
-//! A ball of 10 mm on steel, whose greatest stresses lie half a contact radius below the surface. The same goes for any surface: the path
-//! gives the pressure of every load, and the pressure the stresses at every depth.
+//! A ball of 10 mm on steel, whose greatest stresses lie half a contact radius below the surface. The same goes for any
+//! surface: the path gives the pressure of every load, and the pressure the stresses at every depth.
 //!
 //! ```text
 //! cargo run --release --example where_it_yields

@@ -6,8 +6,8 @@ use crate::{ContactGrowth, Error, Grid, KernelError, Problem};
 
 /// The greatest pressure of each node \[Pa\].
 ///
-/// With 0 ≤ p ≤ H the problem stays convex: minimise ½ pᵀCp + pᵀ(g − δ). Nodes that yield carry H, and are a load on the others,
-/// whose problem is the elastic one with the initial gap g + C H.
+/// With 0 ≤ p ≤ H the problem stays convex: minimise ½ pᵀCp + pᵀ(g − δ). Nodes that yield carry H, and are a load on
+/// the others, whose problem is the elastic one with the initial gap g + C H.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hardness {
     values: Vec<f64>,
@@ -28,8 +28,8 @@ impl Limit<'_> {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for a hardness that is not above zero, [`Error::GridMismatch`] for a map of another grid, and
-    /// [`KernelError::GrowthUnknown`] for a kernel that does not promise that contact grows.
+    /// [`Error::NotPositive`] for a hardness that is not above zero, [`Error::GridMismatch`] for a map of another grid,
+    /// and [`KernelError::GrowthUnknown`] for a kernel that does not promise that contact grows.
     pub(crate) fn resolve(self, problem: &Problem) -> Result<Option<Hardness>, Error> {
         let grid = problem.grid();
         let values = match self {

@@ -2,9 +2,9 @@
 //! contact, event by event, and single loads.
 //!
 //! A rigid rough surface is pressed without friction into an elastic half-space. The surface is a grid of rectangular
-//! cells with a uniform pressure on each. An event is the instant at which one more node of the grid touches. Between two
-//! events all quantities are linear in the approach, so that linear algebra alone gives the path, without load steps, and
-//! every state has its exact tangent stiffnesses.
+//! cells with a uniform pressure on each. An event is the instant at which one more node of the grid touches. Between
+//! two events all quantities are linear in the approach, so that linear algebra alone gives the path, without load
+//! steps, and every state has its exact tangent stiffnesses.
 //!
 //! ```
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
@@ -48,21 +48,22 @@
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
 //!
-//! Grids, heights, files, statistics and generators ([`surface`], [`io`]) are a crate of their own, `asperity-surfaces`, for
-//! those who need no solver. All of it is exported here; its errors ([`SurfaceError`]) are [`Error::Surface`].
+//! Grids, heights, files, statistics and generators ([`surface`], [`io`]) are a crate of their own,
+//! `asperity-surfaces`, for those who need no solver. All of it is exported here; its errors ([`SurfaceError`]) are
+//! [`Error::Surface`].
 //!
 //! # Conventions
 //!
 //! * **Units**: any coherent system; the documentation uses SI. `E* = E / (1 − ν²)` against a rigid body, or
 //!   `1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂` ([`composite_modulus`]); no factor 2.
-//! * **Heights** are positive towards the half-space: the highest node touches first. Only differences of heights matter.
-//!   Two rough bodies are equivalent to one body with the sum of their heights ([`Surface::plus`]).
+//! * **Heights** are positive towards the half-space: the highest node touches first. Only differences of heights
+//!   matter. Two rough bodies are equivalent to one body with the sum of their heights ([`Surface::plus`]).
 //! * **Pressure** is positive in compression and never negative. **Displacement** is positive into the half-space,
 //!   **gap** positive where the surfaces are apart.
 //! * **Approach** δ is measured from first touch, where it is 0, and grows with the load.
-//! * **State n** is the instant at which the n-th node touches; the pressure on that node is still zero. Stiffnesses are
-//!   derivatives on further loading: `contact_stiffness` is dW/dδ (`None` on a periodic half-space, which has no distant
-//!   point at rest), `interfacial_stiffness` is −dW/d(mean gap).
+//! * **State n** is the instant at which the n-th node touches; the pressure on that node is still zero. Stiffnesses
+//!   are derivatives on further loading: `contact_stiffness` is dW/dδ (`None` on a periodic half-space, which has no
+//!   distant point at rest), `interfacial_stiffness` is −dW/d(mean gap).
 //! * **Area** is counted in cells. A fraction of the nominal area runs from 0 to 1.
 //! * **Arrays** are nx × ny [`nalgebra`] matrices: element `[(ix, iy)]` is the node at `x = (ix + ½) dx`,
 //!   `y = (iy + ½) dy`. x is the first index; an image `[row, column]` must be transposed.
@@ -71,10 +72,10 @@
 //! # What a path costs
 //!
 //! A Cholesky factor of n nodes in contact takes 4n² bytes and n³/3 floating-point operations at the speed of a matrix
-//! product; nodes out of contact cost little. When the rest of the path is cheaper with iterations, from some 6400 nodes in
-//! contact on a grid of 256 × 256, the path continues without a factor. Memory is then proportional to the grid, and states
-//! between two exact solutions carry an estimate of their error ([`loading`]). Results are bit for bit the same with any
-//! number of threads, and without the feature `rayon`.
+//! product; nodes out of contact cost little. When the rest of the path is cheaper with iterations, from some 6400
+//! nodes in contact on a grid of 256 × 256, the path continues without a factor. Memory is then proportional to the
+//! grid, and states between two exact solutions carry an estimate of their error ([`loading`]). Results are bit for bit
+//! the same with any number of threads, and without the feature `rayon`.
 //!
 //! # Features
 //!
@@ -86,8 +87,9 @@
 //!
 //! # Limits of the model
 //!
-//! Contact is frictionless, without adhesion unless that is asked for ([`adhesion`]), and slopes are small. It is elastic, and unloading retraces loading, unless a
-//! hardness is given ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the greatest pressure with it.
+//! Contact is frictionless, without adhesion unless that is asked for ([`adhesion`]), and slopes are small. It is
+//! elastic, and unloading retraces loading, unless a hardness is given
+//! ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the greatest pressure with it.
 
 #![warn(missing_debug_implementations)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -2,8 +2,8 @@
 
 use crate::Error;
 
-/// Typical values of a material at room temperature. Those of an alloy or a polymer vary: for results that matter they are
-/// given as numbers.
+/// Typical values of a material at room temperature. Those of an alloy or a polymer vary: for results that matter they
+/// are given as numbers.
 ///
 /// ```
 /// use asperity::material::Material;
@@ -48,8 +48,8 @@ pub enum HardnessScale {
     Brinell,
     /// HV: a pyramid.
     Vickers,
-    /// HRC, of steel: by the depth of a cone. As Vickers number it is `(223 HRC + 14500) / (100 − HRC)`, within 1.5 % of
-    /// the table of ASTM E140 for carbon and alloy steels between 20 and 68.
+    /// HRC, of steel: by the depth of a cone. As Vickers number it is `(223 HRC + 14500) / (100 − HRC)`, within 1.5 %
+    /// of the table of ASTM E140 for carbon and alloy steels between 20 and 68.
     RockwellC,
 }
 
@@ -79,8 +79,8 @@ impl HardnessScale {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] if the number is not positive and finite, [`Error::OutOfRange`] for Rockwell's below 20 and
-    /// above 68, for which there is no comparison.
+    /// [`Error::NotPositive`] if the number is not positive and finite, [`Error::OutOfRange`] for Rockwell's below 20
+    /// and above 68, for which there is no comparison.
     pub fn pascals(self, number: f64) -> Result<f64, Error> {
         if !(number > 0.0 && number.is_finite()) {
             return Err(Error::NotPositive { quantity: "hardness", value: number });
@@ -176,8 +176,8 @@ mod tests {
         Ok(())
     }
 
-    /// A ball that has sunk in 0.375 of its diameter wide: the cap has the area `2 (1 − √(1 − x²)) / x²` times its circle. Rockwell
-    /// numbers beside Vickers numbers from ASTM E140, Table 1, within 1.5 %.
+    /// A ball that has sunk in 0.375 of its diameter wide: the cap has the area `2 (1 − √(1 − x²)) / x²` times its
+    /// circle. Rockwell numbers beside Vickers numbers from ASTM E140, Table 1, within 1.5 %.
     #[test]
     fn hardness_is_a_pressure() -> Result<(), Error> {
         let x: f64 = 0.375;

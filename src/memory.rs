@@ -3,14 +3,14 @@
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
-/// Addresses that threads reserve to allocate from, and a program itself, without taking memory \[bytes\]: measured with two threads
-/// and rounded up.
+/// Addresses that threads reserve to allocate from, and a program itself, without taking memory \[bytes\]: measured
+/// with two threads and rounded up.
 const RESERVED: usize = 256 << 20;
 
-/// The memory that a solver may take if nobody says otherwise: three quarters of what the process may use, where the system tells
-/// it (Linux), and no limit elsewhere. That is the least of the memory of the machine, the limits of its control groups (containers,
-/// batch systems) and the limit of its address space (`ulimit -v`). What else runs makes no difference, so that results do not depend on
-/// it.
+/// The memory that a solver may take if nobody says otherwise: three quarters of what the process may use, where the
+/// system tells it (Linux), and no limit elsewhere. That is the least of the memory of the machine, the limits of its
+/// control groups (containers, batch systems) and the limit of its address space (`ulimit -v`). What else runs makes no
+/// difference, so that results do not depend on it.
 pub fn default_budget() -> usize {
     let of_machine = read_to_string("/proc/meminfo").ok().and_then(|text| total(&text));
     let of_groups = read_to_string("/proc/self/cgroup").ok();
@@ -35,8 +35,8 @@ fn address_space(text: &str) -> Option<usize> {
     Some(bytes.saturating_sub(RESERVED))
 }
 
-/// The least limit of the control groups that `/proc/self/cgroup` names, and of those around them, below the folder where the system
-/// shows them. A container shows its own group as the root.
+/// The least limit of the control groups that `/proc/self/cgroup` names, and of those around them, below the folder
+/// where the system shows them. A container shows its own group as the root.
 fn of_groups_in(root: &Path, text: &str) -> Option<usize> {
     let limits = text.lines().flat_map(|line| {
         let mut parts = line.splitn(3, ':');

@@ -48,16 +48,17 @@ impl Problem {
     /// # Errors
     ///
     /// Those of the surface and of [`KernelTable::new`]; [`Error::GridMismatch`] for heights of another grid;
-    /// [`SurfaceError::HeightNotFinite`](crate::SurfaceError::HeightNotFinite); [`Error::OutOfRange`] for heights, cells and a modulus that are too
-    /// far apart, and if sums of coefficients overflow; [`KernelError::SymbolNotPositive`] for a periodic kernel that is
-    /// not positive definite.
+    /// [`SurfaceError::HeightNotFinite`](crate::SurfaceError::HeightNotFinite); [`Error::OutOfRange`] for heights,
+    /// cells and a modulus that are too far apart, and if sums of coefficients overflow;
+    /// [`KernelError::SymbolNotPositive`] for a periodic kernel that is not positive definite.
     ///
     /// [`KernelError::SymbolNotPositive`]: crate::KernelError::SymbolNotPositive
     pub fn new(surface: &dyn Surface, kernel: &dyn InfluenceKernel) -> Result<Self, Error> {
         Self::of(surface, KernelTable::new(kernel)?.regular())
     }
 
-    /// The same for a path with a hardness, on which no kernel promises more than that contact grows: large gauges then only cost digits.
+    /// The same for a path with a hardness, on which no kernel promises more than that contact grows: large gauges then
+    /// only cost digits.
     pub(crate) fn with_hardness(
         surface: &dyn Surface,
         kernel: &dyn InfluenceKernel,
@@ -173,8 +174,9 @@ impl Problem {
         [self.gap[node], 1.0, self.row_sums()[node]]
     }
 
-    /// The problem of the nodes that do not carry a given load: the load's `displacement` comes to their gap, and nodes under it are
-    /// not counted by row sums, to which they would come with `unit`, their displacement under a pressure of 1.
+    /// The problem of the nodes that do not carry a given load: the load's `displacement` comes to their gap, and nodes
+    /// under it are not counted by row sums, to which they would come with `unit`, their displacement under a pressure
+    /// of 1.
     pub(crate) fn under_load(&self, displacement: &[f64], unit: &[f64]) -> Self {
         let gap = self.gap.iter().zip(displacement).map(|(gap, u)| gap + u);
         let row_sums = self.row_sums().iter().zip(unit).map(|(sum, u)| sum - u);

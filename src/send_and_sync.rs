@@ -1,5 +1,6 @@
-//! All types of this crate can be sent to other threads and shared between them; of those with parameters, where these can. The
-//! builders cannot: they borrow a surface and a kernel that need not. What is asserted here holds if it compiles.
+//! All types of this crate can be sent to other threads and shared between them; of those with parameters, where these
+//! can. The builders cannot: they borrow a surface and a kernel that need not. What is asserted here holds if it
+//! compiles.
 
 use crate::adhesion::{
     Adhesion, AdhesiveBranch, AdhesiveEnd, AdhesiveEvent, AdhesiveFields, AdhesivePath,

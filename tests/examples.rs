@@ -1,7 +1,8 @@
 //! Examples print what their documentation says: the last block of text in it is the output, to the last digit.
 //!
-//! The programs are those that `cargo test --release` has built beside this test; `cargo test --release --test examples` builds
-//! none, and needs `cargo build --release --examples` before it. Without optimisation they would take minutes.
+//! The programs are those that `cargo test --release` has built beside this test; `cargo test --release --test
+//! examples` builds none, and needs `cargo build --release --examples` before it. Without optimisation they would take
+//! minutes.
 #![cfg(all(feature = "io", feature = "rayon"))]
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 

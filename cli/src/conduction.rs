@@ -12,13 +12,13 @@ use crate::values::{CONDUCTIVITY, LENGTH, RESISTIVITY};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Joint")]
 pub(crate) struct Conduct {
-    /// Add the electrical conductance of the contact to tables and files: resistivities of both bodies, or of one if the other conducts
-    /// perfectly
+    /// Add the electrical conductance of the contact to tables and files: resistivities of both bodies, or of one if
+    /// the other conducts perfectly
     #[arg(long, value_name = "OHM_M", value_delimiter = ',', allow_negative_numbers = true, value_parser = RESISTIVITY.positive())]
     resistivity: Vec<f64>,
 
-    /// Add the thermal conductance of the contact to tables and files: thermal conductivities of both bodies in W/(m K), or of one if the other
-    /// conducts perfectly
+    /// Add the thermal conductance of the contact to tables and files: thermal conductivities of both bodies in W/(m
+    /// K), or of one if the other conducts perfectly
     #[arg(long, value_name = "W_M_K", value_delimiter = ',', allow_negative_numbers = true, value_parser = CONDUCTIVITY.positive())]
     conductivity: Vec<f64>,
 
@@ -65,7 +65,8 @@ impl Conduct {
     }
 }
 
-/// The conductances of a contact, NaN where there is none: in full contact without an end, and between two events at which nodes have yielded.
+/// The conductances of a contact, NaN where there is none: in full contact without an end, and between two events at
+/// which nodes have yielded.
 pub(crate) fn conductances(
     conductions: &[Named],
     contact: &ContactState,

@@ -12,9 +12,9 @@ const SIDES: [(usize, usize); 4] = [(0, 1), (1, 2), (3, 2), (0, 3)];
 /// The lines between the nodes whose value is at most `level` and the others, as straight pieces with ends on the lines
 /// between neighbouring nodes, where the field is linear in between.
 ///
-/// Beside a value that is not finite the line runs halfway between the nodes; beside a node without a value, NaN, there is
-/// none. Where two nodes below meet two above across a square, the two below are taken to be
-/// apart, as patches are whose nodes have only a corner in common. Lines are open at the border of the grid.
+/// Beside a value that is not finite the line runs halfway between the nodes; beside a node without a value, NaN, there
+/// is none. Where two nodes below meet two above across a square, the two below are taken to be apart, as patches are
+/// whose nodes have only a corner in common. Lines are open at the border of the grid.
 #[must_use]
 pub fn contour(field: &DMatrix<f64>, level: f64) -> Vec<[Point; 2]> {
     let (nx, ny) = field.shape();

@@ -23,8 +23,8 @@ pub(crate) struct Elasticity {
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive(), help_heading = "Bodies")]
     e_star: Option<f64>,
 
-    /// One body, in place of E*: a name (steel, aluminium, copper, brass, titanium, glass, pmma, ptfe, rubber, ...: typical
-    /// values), or Young's modulus and Poisson's ratio: 210GPa,0.3
+    /// One body, in place of E*: a name (steel, aluminium, copper, brass, titanium, glass, pmma, ptfe, rubber, ...:
+    /// typical values), or Young's modulus and Poisson's ratio: 210GPa,0.3
     #[arg(long, value_name = "NAME|E,NU", conflicts_with = "e_star")]
     material: Option<Material>,
 
@@ -32,8 +32,8 @@ pub(crate) struct Elasticity {
     #[arg(long, value_name = "NAME|E,NU", conflicts_with = "e_star")]
     against: Option<Material>,
 
-    /// A layer of one body, in place of --material: Young's modulus, Poisson's ratio and thickness, 450GPa,0.25,5um, or a name and the
-    /// thickness, gold,2um; may be given several times, from the surface downwards
+    /// A layer of one body, in place of --material: Young's modulus, Poisson's ratio and thickness, 450GPa,0.25,5um, or
+    /// a name and the thickness, gold,2um; may be given several times, from the surface downwards
     #[arg(long, value_name = "E,NU,H|NAME,H", allow_negative_numbers = true, conflicts_with_all = ["e_star", "material"], requires = "base", help_heading = "Bodies")]
     layer: Vec<LayerArgument>,
 

@@ -68,7 +68,8 @@ impl FieldMap<'_> {
         self.write_between(name, caption, [("x", 0.0), ("y", 0.0)])
     }
 
-    /// The same of a vertical section, the middle of whose uppermost row is the surface, along an axis that begins at a value.
+    /// The same of a vertical section, the middle of whose uppermost row is the surface, along an axis that begins at a
+    /// value.
     pub fn write_section(
         &self,
         name: &Path,

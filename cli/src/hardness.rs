@@ -12,8 +12,8 @@ use crate::values;
 /// How much pressure the bodies bear.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Hardness {
-    /// Greatest pressure: cells yield there, and the surface stays deformed. A pressure, or a number of Brinell, Vickers or (of steel,
-    /// 20 to 68) Rockwell: 2.5GPa, 250HB, 250HV, 60HRC [default: nothing yields]
+    /// Greatest pressure: cells yield there, and the surface stays deformed. A pressure, or a number of Brinell,
+    /// Vickers or (of steel, 20 to 68) Rockwell: 2.5GPa, 250HB, 250HV, 60HRC [default: nothing yields]
     #[arg(long, value_name = "PA|HB|HV|HRC", allow_negative_numbers = true, value_parser = values::hardness)]
     hardness: Option<f64>,
 

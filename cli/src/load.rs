@@ -29,9 +29,9 @@ use crate::values::{FORCE, PRESSURE, bytes};
 
 /// The contact of a measured surface under given pressures or loads, each solved by itself
 ///
-/// Prints a table of the states, and writes load.csv and, for each state, contact_map_5MPa.png, named after what it was asked for. The
-/// model is that of `asperity path`: elastic up to the hardness if there is one, without friction and adhesion, with small slopes.
-/// Memory is proportional to the grid, whatever the contact.
+/// Prints a table of the states, and writes load.csv and, for each state, contact_map_5MPa.png, named after what it was
+/// asked for. The model is that of `asperity path`: elastic up to the hardness if there is one, without friction and
+/// adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File with heights, positive towards the half-space (`asperity formats` lists what is read): the rows of
@@ -55,8 +55,8 @@ pub(crate) struct Options {
     loads: Loads,
 
     /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
-    /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the two stiffnesses
-    /// there is only the interfacial one
+    /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the
+    /// two stiffnesses there is only the interfacial one
     #[arg(long, value_enum)]
     periodic: Option<Periodic>,
 
@@ -74,8 +74,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "BYTES", value_parser = bytes, help_heading = "Solver")]
     memory_budget: Option<usize>,
 
-    /// Print one JSON object instead: states, one for each load that was solved for, with the columns of load.csv, iterations and
-    /// seconds (SI units; null where there is no number)
+    /// Print one JSON object instead: states, one for each load that was solved for, with the columns of load.csv,
+    /// iterations and seconds (SI units; null where there is no number)
     #[arg(long)]
     json: bool,
 
@@ -92,7 +92,8 @@ pub(crate) struct Options {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
 struct Loads {
-    /// Load over nominal area, load, or contact area: 5MPa,50MPa or 10N or 2mm2 or 10%; a bare number is a mean pressure in Pa
+    /// Load over nominal area, load, or contact area: 5MPa,50MPa or 10N or 2mm2 or 10%; a bare number is a mean
+    /// pressure in Pa
     #[arg(long, value_name = "STATE,...", value_delimiter = ',', allow_negative_numbers = true)]
     at: Vec<At>,
 
@@ -374,9 +375,9 @@ fn save(directory: &Path, solution: &FixedLoadSolution, at: At) -> Result<Vec<Pa
     written.into_iter().collect()
 }
 
-/// `Ok` if the certificate of a solution is within what was asked for. The solver stops at a tolerance of gaps that is relative to
-/// no more than the length of the certificate, and keeps pressures from being negative and their sum at the load: what is
-/// ten times worse, or than rounding, is wrong.
+/// `Ok` if the certificate of a solution is within what was asked for. The solver stops at a tolerance of gaps that is
+/// relative to no more than the length of the certificate, and keeps pressures from being negative and their sum at the
+/// load: what is ten times worse, or than rounding, is wrong.
 fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
     let allowed = (10.0 * tolerance).max(1e-10);
     let certificate = &solution.certificate;

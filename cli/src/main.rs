@@ -39,16 +39,17 @@ use asperity_cli::units::{self, Units};
 use asperity_cli::{say, speech};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-/// Elastic contact of rough surfaces by the boundary element method: the whole loading path, event by event, or single loads.
+/// Elastic contact of rough surfaces by the boundary element method: the whole loading path, event by event, or single
+/// loads.
 ///
 /// The model: a rigid rough surface is pressed into an elastic half-space, without friction and adhesion, and with
-/// slopes well below 1. Nothing yields, unless a hardness is given. Two elastic bodies are equivalent to one with the composite modulus E*. The discrete problem has one
-/// pressure for each cell of the grid. The program solves it to rounding, or prints the remaining error. Every command warns if
-/// the grid is too coarse for the surface.
+/// slopes well below 1. Nothing yields, unless a hardness is given. Two elastic bodies are equivalent to one with the
+/// composite modulus E*. The discrete problem has one pressure for each cell of the grid. The program solves it to
+/// rounding, or prints the remaining error. Every command warns if the grid is too coarse for the surface.
 ///
-/// Without a command the program follows the path of a generated surface to 10 % contact, in seconds, as an example. For your
-/// own surface: `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help` lists
-/// the options of that command; the other commands have such a list too.
+/// Without a command the program follows the path of a generated surface to 10 % contact, in seconds, as an example.
+/// For your own surface: `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path
+/// --help` lists the options of that command; the other commands have such a list too.
 ///
 /// Numbers are in SI units, or have a unit: 5MPa, 1.024mm, 250N, 2h, 10%, 60HRC.
 #[derive(Debug, Parser)]

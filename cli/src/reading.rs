@@ -36,12 +36,13 @@ pub(crate) struct Reading {
     #[arg(long, value_name = "NAME", help_heading = "Reading the file")]
     channel: Option<String>,
 
-    /// How the numbers of a text are arranged, where it does not say: matrix (heights only), x-row (positions along x in the
-    /// first row), y-column (positions along y in the first column), axes (both), points (x, y, z in each line)
+    /// How the numbers of a text are arranged, where it does not say: matrix (heights only), x-row (positions along x
+    /// in the first row), y-column (positions along y in the first column), axes (both), points (x, y, z in each line)
     #[arg(long, value_name = "LAYOUT", value_parser = layout, help_heading = "Reading the file")]
     layout: Option<TextLayout>,
 
-    /// Take a NumPy array as an image, [row, column], whose rows are y; without it is [ix, iy]. Rows of all other formats are y
+    /// Take a NumPy array as an image, [row, column], whose rows are y; without it is [ix, iy]. Rows of all other
+    /// formats are y
     #[arg(long, help_heading = "Reading the file")]
     rows_are_y: bool,
 
@@ -101,7 +102,8 @@ impl Reading {
         given.filter_map(|(name, value)| Some((name.to_string(), value?))).collect()
     }
 
-    /// `Ok` if nothing else was asked for than sides: the rest is for a surface that is read from a file, and not for one that is generated.
+    /// `Ok` if nothing else was asked for than sides: the rest is for a surface that is read from a file, and not for
+    /// one that is generated.
     pub(crate) fn only_sides(&self) -> Result<(), Failure> {
         match self.given().keys().next() {
             None => Ok(()),
@@ -168,7 +170,8 @@ impl Reading {
         self.prepare(surface).map_err(failed)
     }
 
-    /// `Ok` unless a surface is one row of nodes that does not repeat across: a strip as narrow as a cell, which nobody means.
+    /// `Ok` unless a surface is one row of nodes that does not repeat across: a strip as narrow as a cell, which nobody
+    /// means.
     pub(crate) fn check_row(surface: &Topography, boundary: Boundary) -> Result<(), Failure> {
         let ((nx, ny), [x_repeats, y_repeats]) = (surface.grid().shape(), boundary.repeats());
         let across = match (nx, ny) {

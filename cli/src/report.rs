@@ -12,18 +12,21 @@ use clap::Args;
 
 use crate::shell;
 
-/// A recorded path as one page for a browser: the contact at every state under a slider, charts, tables, and what made it
+/// A recorded path as one page for a browser: the contact at every state under a slider, charts, tables, and what made
+/// it
 ///
-/// The page is one file that needs no network and no other file: open it by a double click, or mail it. It has the order of all events, all
-/// scalars, pressure and gap at 24 states, the surface, the bodies, warnings and residuals. Tables that `asperity slip`, creep, leak and
-/// `path --unload` have written beside the record, and not before it, are shown too. Two records are compared.
+/// The page is one file that needs no network and no other file: open it by a double click, or mail it. It has the
+/// order of all events, all scalars, pressure and gap at 24 states, the surface, the bodies, warnings and residuals.
+/// Tables that `asperity slip`, creep, leak and `path --unload` have written beside the record, and not before it, are
+/// shown too. Two records are compared.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// Files that `asperity path --record` has written: one, or two to compare
     #[arg(value_name = "FILE.npz", required = true, num_args = 1..=2)]
     records: Vec<PathBuf>,
 
-    /// Folder of other tables of the first record: slip.csv, creep.csv, leak.csv, unloading.csv; may be given several times
+    /// Folder of other tables of the first record: slip.csv, creep.csv, leak.csv, unloading.csv; may be given several
+    /// times
     #[arg(long, value_name = "DIR")]
     with: Vec<PathBuf>,
 

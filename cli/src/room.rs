@@ -3,8 +3,8 @@
 use asperity::{Error, Grid, SurfaceError};
 use asperity_cli::outcome::Failure;
 
-/// A failure because of an error. If that is for want of memory, or because a grid is larger than any, the largest square
-/// grid that `check` has room for is told with it.
+/// A failure because of an error. If that is for want of memory, or because a grid is larger than any, the largest
+/// square grid that `check` has room for is told with it.
 pub(crate) fn failure(
     what: String,
     error: Error,

@@ -44,8 +44,8 @@ impl Settings {
         Ok(Self(settings))
     }
 
-    /// `Ok` if the paths of two folders are of the same settings; if they are `members` of an ensemble, but for the seed or
-    /// the measured map.
+    /// `Ok` if the paths of two folders are of the same settings; if they are `members` of an ensemble, but for the
+    /// seed or the measured map.
     pub(crate) fn check_same(
         &self,
         name: &str,

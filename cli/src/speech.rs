@@ -45,8 +45,8 @@ pub fn warn(warning: impl Display) {
     }
 }
 
-/// Prints a line for programs. If nobody reads any more (`asperity … | head`), it is lost, and the work goes on; if it cannot be
-/// written (a full disk), the work goes on as well, and [`check`] says so at its end.
+/// Prints a line for programs. If nobody reads any more (`asperity … | head`), it is lost, and the work goes on; if it
+/// cannot be written (a full disk), the work goes on as well, and [`check`] says so at its end.
 pub fn answer(line: Arguments<'_>) {
     let written = writeln!(std::io::stdout(), "{line}");
     if let Err(error) = written

@@ -197,7 +197,8 @@ fn plain(unit: &str) -> String {
     plain
 }
 
-/// A number in a unit. A power of ten moves the point and does not round: 1.024 mm are the number that is written 1.024e-3.
+/// A number in a unit. A power of ten moves the point and does not round: 1.024 mm are the number that is written
+/// 1.024e-3.
 fn scaled(number: &str, unit: f64) -> Result<f64, String> {
     let not_a_number = |_| "not a number".to_string();
     let power = unit.log10().round() as i32;
@@ -209,7 +210,8 @@ fn scaled(number: &str, unit: f64) -> Result<f64, String> {
     format!("{digits}e{}", exponent.saturating_add(power)).parse().map_err(|_| not_a_number(()))
 }
 
-/// A hardness \[Pa\], as a pressure or as a number of Brinell, Vickers or Rockwell. Numbers of the test are passed over: 700HV10.
+/// A hardness \[Pa\], as a pressure or as a number of Brinell, Vickers or Rockwell. Numbers of the test are passed
+/// over: 700HV10.
 pub(crate) fn hardness(text: &str) -> Result<f64, String> {
     let (number, unit) = split(text)?;
     let symbol = unit.trim_end_matches(|c: char| c.is_ascii_digit() || "./ ".contains(c));

@@ -36,8 +36,8 @@ fn flat(file: &Path, n: u64) -> std::io::Result<()> {
 
 /// What a refusal takes: the program itself and its stacks; 17 MB were measured.
 const REFUSAL: usize = 64;
-/// What a path takes beside its budget: each thread reserves 64 MB of addresses to allocate from, the one that draws the
-/// progress too, and no memory; 223 MB were measured.
+/// What a path takes beside its budget: each thread reserves 64 MB of addresses to allocate from, the one that draws
+/// the progress too, and no memory; 223 MB were measured.
 const ROOM: usize = 256;
 
 #[test]
@@ -61,8 +61,8 @@ fn paths_on_large_grids_are_refused_in_words() -> Done {
 #[test]
 fn loads_on_large_grids_are_refused_in_words() -> Done {
     let folder = Scratch::new("space-load")?;
-    // 32 MB of heights are read before anything else is known of them, and are held twice while they are; the system's allocator
-    // reserves another 64 MB of addresses for each thread that allocates.
+    // 32 MB of heights are read before anything else is known of them, and are held twice while they are; the system's
+    // allocator reserves another 64 MB of addresses for each thread that allocates.
     flat(&folder.join("2048.npy"), 2048)?;
     let line = "load --surface 2048.npy --side 1e-3 --e-star 1e9 --load 1 --memory-budget 100e6";
     let done = run(&folder.0, REFUSAL + 192, line)?;
@@ -98,7 +98,8 @@ fn what_fits_the_budget_runs() -> Done {
     Ok(())
 }
 
-/// Without `--memory-budget` the limit of the address space is known: the error names a budget below it, and nothing is aborted.
+/// Without `--memory-budget` the limit of the address space is known: the error names a budget below it, and nothing is
+/// aborted.
 #[test]
 fn the_default_budget_knows_the_limit() -> Done {
     let folder = Scratch::new("space-default")?;

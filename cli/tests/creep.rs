@@ -110,8 +110,8 @@ fn histories_from_files() -> Done {
     Ok(())
 }
 
-/// The advice of a refusal is enough, so that the same command then ends well; so is a path that ends at the load over what is left of
-/// the modulus, which rounding puts above or below.
+/// The advice of a refusal is enough, so that the same command then ends well; so is a path that ends at the load over
+/// what is left of the modulus, which rounding puts above or below.
 #[test]
 fn what_is_advised_is_enough() -> Done {
     let folder = Scratch::new("creep-advice")?;

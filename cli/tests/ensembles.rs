@@ -205,8 +205,8 @@ fn settings_lie_beside_every_path() -> Done {
     Ok(())
 }
 
-/// A dry run of any path prints what it takes, as JSON too, and no file comes or changes. Nodes are those of the path. Times and memory are
-/// compared with what was measured on two idle cores: within a factor of 3, and of 1.6.
+/// A dry run of any path prints what it takes, as JSON too, and no file comes or changes. Nodes are those of the path.
+/// Times and memory are compared with what was measured on two idle cores: within a factor of 3, and of 1.6.
 #[test]
 fn a_dry_run_estimates_and_writes_nothing() -> Done {
     let folder = Scratch::new("ensemble-dry")?;

@@ -1,4 +1,5 @@
-//! The column of ensembles of `docs/features_together.md`: a path of `--seeds` is the one of its seed alone, in every byte.
+//! The column of ensembles of `docs/features_together.md`: a path of `--seeds` is the one of its seed alone, in every
+//! byte.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! Disks without room, and folders that are none: an exit code and a message that names the file, and nothing that looks
-//! like a whole file and is not.
+//! Disks without room, and folders that are none: an exit code and a message that names the file, and nothing that
+//! looks like a whole file and is not.
 #![cfg(target_os = "linux")]
 
 mod common;

@@ -30,7 +30,8 @@ fn numbers(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
     Ok(column(file, name)?.iter().map(|cell| cell.parse()).collect::<Result<_, _>>()?)
 }
 
-/// A load under which all cells in contact have yielded, half of them: the state of the path, which ends where that load is reached.
+/// A load under which all cells in contact have yielded, half of them: the state of the path, which ends where that
+/// load is reached.
 #[test]
 fn loads_of_plateaus_are_those_of_the_path() -> Done {
     let folder = Scratch::new("hardness_plateau")?;
@@ -49,7 +50,8 @@ fn loads_of_plateaus_are_those_of_the_path() -> Done {
     Ok(())
 }
 
-/// The contact conducts as where unloading begins, in path.csv and in the table; the files of a record that goes on have the same columns.
+/// The contact conducts as where unloading begins, in path.csv and in the table; the files of a record that goes on
+/// have the same columns.
 #[test]
 fn what_yields_conducts_as_well() -> Done {
     let folder = Scratch::new("hardness_conducts")?;
@@ -87,8 +89,8 @@ fn what_yields_conducts_as_well() -> Done {
     Ok(())
 }
 
-/// Events of both kinds; the way back begins at the last state, and its surface is one to be read again: pressed by the same load it
-/// is in contact with as many nodes.
+/// Events of both kinds; the way back begins at the last state, and its surface is one to be read again: pressed by the
+/// same load it is in contact with as many nodes.
 #[test]
 fn cells_yield_and_the_way_back_is_elastic() -> Done {
     let folder = Scratch::new("hardness")?;
@@ -183,7 +185,8 @@ fn single_loads_have_a_hardness_too() -> Done {
     Ok(())
 }
 
-/// Surfaces of which all is in contact before the load is that of the path: unloading begins at the last state all the same.
+/// Surfaces of which all is in contact before the load is that of the path: unloading begins at the last state all the
+/// same.
 #[test]
 fn unloading_begins_at_the_last_state() -> Done {
     let folder = Scratch::new("hardness_unloading_from_full_contact")?;

@@ -29,7 +29,8 @@ const PATH: [&str; 10] = [
 const LEAK: [&str; 8] =
     ["leak", "path.npz", "--viscosity", "1e-3", "--pressure-drop", "1e5", "--along", "x"];
 
-/// Standard output is one document; its leak rate is that of the load asked for, and the table ends with 0 where the last channel closes.
+/// Standard output is one document; its leak rate is that of the load asked for, and the table ends with 0 where the
+/// last channel closes.
 #[test]
 fn leaks_are_printed_and_drawn() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("leak")?;
@@ -83,7 +84,8 @@ fn leaks_are_printed_and_drawn() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A gas of 3 bar into 1 leaks twice as much as a liquid of that viscosity, told as throughput too; a least gap closes the seal earlier.
+/// A gas of 3 bar into 1 leaks twice as much as a liquid of that viscosity, told as throughput too; a least gap closes
+/// the seal earlier.
 #[test]
 fn gases_leak_and_narrow_gaps_do_not() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("gas")?;
@@ -186,7 +188,8 @@ fn joints_are_tabulated() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Where the body repeats along one side it is the interfacial stiffness that counts, in every file and behind a record too.
+/// Where the body repeats along one side it is the interfacial stiffness that counts, in every file and behind a record
+/// too.
 #[test]
 fn joints_of_rows_conduct_by_the_interface() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("joint-row")?;
@@ -237,8 +240,8 @@ fn joints_of_rows_conduct_by_the_interface() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// One record of a periodic half-space whose last channel from end to end closes later than the last one around the grid: `leak`,
-/// `patches` with and without corners, and `creep` say the same.
+/// One record of a periodic half-space whose last channel from end to end closes later than the last one around the
+/// grid: `leak`, `patches` with and without corners, and `creep` say the same.
 #[test]
 fn all_commands_seal_at_one_state() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("seals")?;
@@ -307,7 +310,8 @@ fn all_commands_seal_at_one_state() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Conductance, tangential stiffness, slip and creep hold on half-spaces alone, and say so; pressure over overclosure is what the path says.
+/// Conductance, tangential stiffness, slip and creep hold on half-spaces alone, and say so; pressure over overclosure
+/// is what the path says.
 #[test]
 fn joints_of_layers_are_refused() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("joints-of-layers")?;

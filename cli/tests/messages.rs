@@ -10,7 +10,8 @@ use common::{Scratch, is_refused, output, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
-/// What a command that is refused says: the words that are expected, none of those that are not, no name of Rust, and each file once.
+/// What a command that is refused says: the words that are expected, none of those that are not, no name of Rust, and
+/// each file once.
 #[test]
 fn errors_name_options() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("messages")?;

@@ -20,8 +20,8 @@ fn asperity(folder: &PathBuf, arguments: &[&str]) -> std::io::Result<Output> {
     program.current_dir(folder).args(arguments).output()
 }
 
-/// In full contact of a periodic surface there is one patch of all nodes without an edge, so that nothing is to be corrected,
-/// and at first touch there is one of one node.
+/// In full contact of a periodic surface there is one patch of all nodes without an edge, so that nothing is to be
+/// corrected, and at first touch there is one of one node.
 #[test]
 fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
     let folder = folder()?;

@@ -26,8 +26,8 @@ fn object(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
     Ok(serde_json::from_slice(&run(folder, &format!("{line} --json"))?.stdout)?)
 }
 
-/// Hertz: half width `√(4 W R / π E*)` under a load W per width, greatest pressure `2 W / π a`. On 512 cells of a millimetre edges are off by one cell, and the
-/// greatest pressure by a per cent.
+/// Hertz: half width `√(4 W R / π E*)` under a load W per width, greatest pressure `2 W / π a`. On 512 cells of a
+/// millimetre edges are off by one cell, and the greatest pressure by a per cent.
 #[test]
 fn a_cylinder_is_a_line_contact() -> Done {
     let folder = Scratch::new("profile-hertz")?;

@@ -11,7 +11,8 @@ use asperity::io::{read_npy, write_npy, write_x3p};
 use common::{Scratch, asperity, data, run, said};
 use nalgebra::DMatrix;
 
-/// A line without what differs from run to run and from processor to processor: the time, and the residuals that are rounding.
+/// A line without what differs from run to run and from processor to processor: the time, and the residuals that are
+/// rounding.
 fn lasting(line: &str) -> &str {
     let rounding =
         ["greatest gap in contact", "least pressure in contact", "sum of pressures less load"];
@@ -21,8 +22,8 @@ fn lasting(line: &str) -> &str {
     rounding.into_iter().find(|name| line.trim_start().starts_with(name)).unwrap_or(line)
 }
 
-/// The first command of the README, without arguments, prints the sample below it. If it fails because the program prints something
-/// else on purpose, put what it prints into the README: `cargo run --release`.
+/// The first command of the README, without arguments, prints the sample below it. If it fails because the program
+/// prints something else on purpose, put what it prints into the README: `cargo run --release`.
 #[test]
 fn the_first_command_prints_the_sample() {
     let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
@@ -62,7 +63,8 @@ const SMALLER: [(&str, &str); 7] = [
     ("path --material copper", "path --nodes 64 --material copper"),
 ];
 
-/// The lines of the pages in docs, of the README, and of that of the program which stand between fences and are commands.
+/// The lines of the pages in docs, of the README, and of that of the program which stand between fences and are
+/// commands.
 fn commands(page: &Path) -> Vec<String> {
     let text = fs::read_to_string(page).unwrap();
     // Every second piece lies between fences; a backslash goes on in the next line.
@@ -100,8 +102,8 @@ fn with_files(page: &str) -> Scratch {
     folder
 }
 
-/// Every command that the pages show runs, in the order of its page, but for the first one of the README, which has its own test. Of
-/// studies, which `cargo test` does not build, there is the program.
+/// Every command that the pages show runs, in the order of its page, but for the first one of the README, which has its
+/// own test. Of studies, which `cargo test` does not build, there is the program.
 #[test]
 fn commands_of_the_pages_run() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -68,8 +68,8 @@ fn are_identical(found: &Path, expected: &Path) -> Done {
 
 const PATH: &str = "path --nodes 64 --updater cholesky";
 
-/// What a record holds is read from it: the same states, table, fields and picture as of a path that was to end there. The
-/// record stays as it is.
+/// What a record holds is read from it: the same states, table, fields and picture as of a path that was to end there.
+/// The record stays as it is.
 #[test]
 fn targets_that_lie_behind_are_read_from_the_record() -> Done {
     let folder = Scratch::new("records-behind")?;
@@ -155,8 +155,8 @@ fn a_record_grows_with_its_path() -> Done {
     Ok(())
 }
 
-/// A path that goes on from its record has the file of the path that was not interrupted, byte for byte: with a factor, without one,
-/// and where the default gives it up on the way.
+/// A path that goes on from its record has the file of the path that was not interrupted, byte for byte: with a factor,
+/// without one, and where the default gives it up on the way.
 #[test]
 fn a_path_in_parts_is_the_whole_one() -> Done {
     let folder = Scratch::new("records-parts")?;

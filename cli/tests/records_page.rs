@@ -14,7 +14,8 @@ use serde_json::Value;
 type Done = Result<(), Box<dyn Error>>;
 type Names = BTreeSet<String>;
 
-/// Paths that have all there is: yields, releases and a limit; with a factor, and without one on both half-spaces; with bodies.
+/// Paths that have all there is: yields, releases and a limit; with a factor, and without one on both half-spaces; with
+/// bodies.
 const PATHS: [&str; 8] = [
     "--hardness 2.5e9",
     "--hardness 2.5e9 --max-load 1e3",

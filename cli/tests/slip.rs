@@ -50,7 +50,8 @@ fn column(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
     Ok(cells.collect::<Result<_, _>>()?)
 }
 
-/// Its answers hang together, and with its tables; the history of a first loading and a cycle loses a quarter of a cycle and a whole one.
+/// Its answers hang together, and with its tables; the history of a first loading and a cycle loses a quarter of a
+/// cycle and a whole one.
 #[test]
 fn answers_and_tables_agree() -> Done {
     let folder = with_record("slip")?;

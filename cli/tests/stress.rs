@@ -13,7 +13,8 @@ use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
 
-/// Steel against glass: what is printed is what the library finds, for both bodies; tractions on the second are opposite.
+/// Steel against glass: what is printed is what the library finds, for both bodies; tractions on the second are
+/// opposite.
 #[test]
 fn stresses_are_printed_and_drawn() -> Done {
     let folder = Scratch::new("stress")?;

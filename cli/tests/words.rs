@@ -148,7 +148,8 @@ fn assumed_units_and_sides_are_said() -> Done {
     Ok(())
 }
 
-/// A mean pressure is a load, with a unit or without. People read a table of all states, and programs a file and an object.
+/// A mean pressure is a load, with a unit or without. People read a table of all states, and programs a file and an
+/// object.
 #[test]
 fn loads_are_given_as_mean_pressures_too() -> Done {
     let folder = with_surface("mean-pressure")?;
@@ -185,7 +186,8 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
     Ok(())
 }
 
-/// Rows, maps and fields of the states that are asked for, all of one path that ends at the last of them, and no row but theirs.
+/// Rows, maps and fields of the states that are asked for, all of one path that ends at the last of them, and no row
+/// but theirs.
 #[test]
 fn states_are_asked_for() -> Done {
     let folder = Scratch::new("at")?;

@@ -29,10 +29,10 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Of contacts that a local solution takes in as a whole: `asperity::loading` speaks of 1e-5 at worst on large grids, and a window
-    /// is a large part of so short a path as these. Between the ends of windows closing rates are solved for to 1e-3 of their mean; on
-    /// large grids what is left averages out, to 3e-4 at worst, and on so few nodes it need not. Up to 0.3 % of the errors of an approach
-    /// exceed their estimate, by a factor of two.
+    /// Of contacts that a local solution takes in as a whole: `asperity::loading` speaks of 1e-5 at worst on large
+    /// grids, and a window is a large part of so short a path as these. Between the ends of windows closing rates are
+    /// solved for to 1e-3 of their mean; on large grids what is left averages out, to 3e-4 at worst, and on so few
+    /// nodes it need not. Up to 0.3 % of the errors of an approach exceed their estimate, by a factor of two.
     pub(crate) const SMALL: Self = Self {
         load: 1e-4,
         stiffness: 3e-5,
@@ -41,11 +41,12 @@ impl Bounds {
         excess: 2.0,
         order: 0.0,
     };
-    /// The same where nodes yield. Ties are settled by solutions whose gaps are off by 1e-10 of the approach. Where nearly all of it is plastic
-    /// depth, elastic gaps are not much larger, and events are in order as far as they say, or are off at worst.
+    /// The same where nodes yield. Ties are settled by solutions whose gaps are off by 1e-10 of the approach. Where
+    /// nearly all of it is plastic depth, elastic gaps are not much larger, and events are in order as far as they say,
+    /// or are off at worst.
     pub(crate) const SMALL_YIELDING: Self = Self { order: FAR_OFF, ..Self::SMALL };
-    /// Of larger ones on cells up to 100 times as long as wide: some three times the worst of 3000 paths, and for the interfacial
-    /// stiffness twice the worst of 17 000, on 15 × 24 nodes where a window is an eighth of the path.
+    /// Of larger ones on cells up to 100 times as long as wide: some three times the worst of 3000 paths, and for the
+    /// interfacial stiffness twice the worst of 17 000, on 15 × 24 nodes where a window is an eighth of the path.
     pub(crate) const LARGE: Self = Self {
         load: 1e-3,
         stiffness: 1e-3,
@@ -56,8 +57,8 @@ impl Bounds {
     };
 }
 
-/// Compares states with exact ones: events up to ties, and scalars where no tie makes the order of equals matter. `uniform`
-/// is the displacement under a load that is not reported.
+/// Compares states with exact ones: events up to ties, and scalars where no tie makes the order of equals matter.
+/// `uniform` is the displacement under a load that is not reported.
 pub(crate) fn same_path(
     (found, exact): (&[LoadingState], &[LoadingState]),
     bounds: &Bounds,

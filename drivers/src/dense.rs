@@ -4,19 +4,20 @@
 //! are `p = C_II⁻¹ (δ e − g_I)` by a Cholesky factor of nalgebra, made afresh for every set. What was found is a state
 //! of contact at the approach δ, and the only one, if no such pressure and no gap elsewhere is negative.
 //!
-//! Nodes that have yielded carry their hardness: `p_I = C_II⁻¹ (δ e − g_I − C_IY H_Y)` on the elastic ones, no pressure above the
-//! hardness, and no gap above zero where a node has yielded.
+//! Nodes that have yielded carry their hardness: `p_I = C_II⁻¹ (δ e − g_I − C_IY H_Y)` on the elastic ones, no pressure
+//! above the hardness, and no gap above zero where a node has yielded.
 //!
 //! # How large an error may be
 //!
-//! A solution by a factor has a residual of some n rounding errors of the numbers that it cancels, the lengths
-//! `ℓ = δ + max g + |C| |p|`. In contact that is the error of a gap, and of a displacement elsewhere it is
-//! `‖C_OI C_II⁻¹‖` times as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of
-//! the very set. Where nodes have yielded they are the greatest of all sets before: a window of events is computed from the equations
-//! at its beginning, of more elastic nodes. What a window says of gaps, `g_Y = B⁻¹ b_Y` and `r_Y = −B⁻¹ y_Y` of nodes that yielded in it, has
-//! `B = (C_II⁻¹)_YY` and the pressures `b_Y` and rates `y_Y` solved for at its beginning: columns with residuals as above are off by
-//! `‖C_II⁻¹‖` times as much, and `‖B⁻¹‖ ≤ ‖C‖` since `B⁻¹` is a Schur complement. So scalars and rates, which windows carry on, are off by the
-//! product of both norms instead of `1 + ‖C_OI C_II⁻¹‖`; fields are solved for on the very set.
+//! A solution by a factor has a residual of some n rounding errors of the numbers that it cancels, the lengths `ℓ = δ +
+//! max g + |C| |p|`. In contact that is the error of a gap, and of a displacement elsewhere it is `‖C_OI C_II⁻¹‖` times
+//! as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of the very set. Where
+//! nodes have yielded they are the greatest of all sets before: a window of events is computed from the equations at
+//! its beginning, of more elastic nodes. What a window says of gaps, `g_Y = B⁻¹ b_Y` and `r_Y = −B⁻¹ y_Y` of nodes that
+//! yielded in it, has `B = (C_II⁻¹)_YY` and the pressures `b_Y` and rates `y_Y` solved for at its beginning: columns
+//! with residuals as above are off by `‖C_II⁻¹‖` times as much, and `‖B⁻¹‖ ≤ ‖C‖` since `B⁻¹` is a Schur complement. So
+//! scalars and rates, which windows carry on, are off by the product of both norms instead of `1 + ‖C_OI C_II⁻¹‖`;
+//! fields are solved for on the very set.
 
 use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDisplacement};
 use asperity_testing::dense::{influence_matrix, initial_gap};
@@ -24,8 +25,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::problem::Sample;
 
-/// Rounding errors of a residual, as a multiple of the number of nodes and a constant that stands for those of the convolution
-/// and of the path.
+/// Rounding errors of a residual, as a multiple of the number of nodes and a constant that stands for those of the
+/// convolution and of the path.
 const ROUNDINGS: f64 = 4.0;
 const ANYWAY: f64 = 16.0;
 
@@ -58,8 +59,8 @@ pub(crate) struct Scalars {
     pub(crate) plastic: Option<Plastic>,
 }
 
-/// What is lost where nodes have yielded: the sum of their plastic depths and that of depths times hardness, and how much each
-/// grows with the sum of pressures.
+/// What is lost where nodes have yielded: the sum of their plastic depths and that of depths times hardness, and how
+/// much each grows with the sum of pressures.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plastic {
     pub(crate) sums: [f64; 2],
@@ -141,15 +142,15 @@ impl Dense {
         (displacement, lengths.fold(0.0, f64::max) + given)
     }
 
-    /// The same problem in the gauge in which solutions for one load are computed, of the size of a cell's own displacement:
-    /// their errors are measured in it. The problem itself where the mean displacement means something.
+    /// The same problem in the gauge in which solutions for one load are computed, of the size of a cell's own
+    /// displacement: their errors are measured in it. The problem itself where the mean displacement means something.
     pub(crate) fn in_computing_gauge(self) -> Self {
         self.in_gauge(|_, good| good)
     }
 
-    /// The same problem in the gauge in which paths are computed: the kernel's own, unless it is far above a good one or
-    /// lets a coefficient be negative; with a hardness nothing is convex. An approach that is reported for mean planes goes with the load by that gauge,
-    /// and by another one only as well as the load is known.
+    /// The same problem in the gauge in which paths are computed: the kernel's own, unless it is far above a good one
+    /// or lets a coefficient be negative; with a hardness nothing is convex. An approach that is reported for mean
+    /// planes goes with the load by that gauge, and by another one only as well as the load is known.
     pub(crate) fn in_gauge_of_paths(self, growth: ContactGrowth) -> Self {
         let least = self.influence.column(0).min();
         let greatest = match growth {
@@ -175,8 +176,8 @@ impl Dense {
         self
     }
 
-    /// `C(0, 0) p̄` for pressures of this sum, which errors are relative to where the approach is less; nothing where the mean
-    /// displacement means something.
+    /// `C(0, 0) p̄` for pressures of this sum, which errors are relative to where the approach is less; nothing where
+    /// the mean displacement means something.
     pub(crate) fn own_displacement(&self, sum: f64) -> f64 {
         match self.gauge {
             Some(_) => self.influence[(0, 0)] * sum / self.nodes() as f64,
@@ -446,7 +447,8 @@ impl<'a> ContactSet<'a> {
         }
     }
 
-    /// How far the sum of pressures is off where gaps are: `Σ |y₂|` times as much, and the rounding of what yielded nodes carry.
+    /// How far the sum of pressures is off where gaps are: `Σ |y₂|` times as much, and the rounding of what yielded
+    /// nodes carry.
     pub(crate) fn sum_error(&self, gap_error: f64) -> f64 {
         let rounding = Dense::rounding(self.dense.nodes());
         self.norms.rate * gap_error + rounding * self.load.sum()

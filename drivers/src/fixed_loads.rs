@@ -13,7 +13,8 @@ use crate::refusal::Circumstances;
 use crate::variant::{Run, Variant};
 use crate::verdict::{Tally, Verdict, Violation};
 
-/// More than the default: where nodes have to join one by one on bodies that promise nothing, some ten thousand are needed.
+/// More than the default: where nodes have to join one by one on bodies that promise nothing, some ten thousand are
+/// needed.
 const MOST_ITERATIONS: usize = 50_000;
 
 /// Nodes of a side and of a grid. Two coarser grids are made of a side above 32, one above 16.

@@ -97,8 +97,8 @@ impl Judge {
             && self.settings.tolerance < SURE * self.circumstances.error
     }
 
-    /// A number of nodes that no load has, since others touch together with them, or on a body whose contact shrinks, where a
-    /// search may come to a load at which the number is jumped over once more.
+    /// A number of nodes that no load has, since others touch together with them, or on a body whose contact shrinks,
+    /// where a search may come to a load at which the number is jumped over once more.
     fn may_be_missed(&self, fraction: f64) -> bool {
         self.is_unreachable(fraction) || self.contact_shrinks()
     }
@@ -119,8 +119,8 @@ impl Judge {
             && self.grid.nodes_in(fraction).ok() > most
     }
 
-    /// The interval of loads with as many nodes in contact as fit into a fraction is nothing, or as narrow as solutions are
-    /// exact.
+    /// The interval of loads with as many nodes in contact as fit into a fraction is nothing, or as narrow as solutions
+    /// are exact.
     fn is_unreachable(&self, fraction: f64) -> bool {
         let Ok(nodes) = self.grid.nodes_in(fraction) else {
             return true;
@@ -265,9 +265,9 @@ impl Judge {
 
     /// The state of the path at the same load.
     ///
-    /// With the pressures p and gaps w of the solution and p*, w* of the path the difference d = p − p* of two pressures of
-    /// one sum has `dᵀ C d = dᵀ (w − w*) ≤ pᵀ w − p*ᵀ w`, because neither p nor w* is negative and `p*ᵀ w* = 0`: at most the
-    /// sums of both times the greatest gap in contact or overlap.
+    /// With the pressures p and gaps w of the solution and p*, w* of the path the difference d = p − p* of two
+    /// pressures of one sum has `dᵀ C d = dᵀ (w − w*) ≤ pᵀ w − p*ᵀ w`, because neither p nor w* is negative and `p*ᵀ w*
+    /// = 0`: at most the sums of both times the greatest gap in contact or overlap.
     fn check_path(
         &self,
         state: &ContactState,

@@ -16,9 +16,9 @@ use crate::walk::{Demands, Walk};
 /// Nodes of a side: more than 144 nodes in all, which [`ConjugateGradient`] takes in as a whole.
 const SIDES: (usize, usize) = (13, 24);
 
-/// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and follows
-/// its path to full contact with a factor and without. The path without has the same events and is as exact as it says, and
-/// some state of that with a factor is looked at densely.
+/// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and
+/// follows its path to full contact with a factor and without. The path without has the same events and is as exact as
+/// it says, and some state of that with a factor is looked at densely.
 ///
 /// # Errors
 ///

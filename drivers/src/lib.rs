@@ -1,8 +1,8 @@
 //! Drivers: arbitrary bytes in, an answer of the library out, and an independent look at it.
 //!
 //! Each driver makes an input of bytes, hostile or sensible, asks the library, and checks what it says without the
-//! library's help. The same drivers serve a fuzzer (`fuzz` in the repository), which looks for bytes that reach new code,
-//! and random tests with seeds (`cargo test`), which need no nightly toolchain.
+//! library's help. The same drivers serve a fuzzer (`fuzz` in the repository), which looks for bytes that reach new
+//! code, and random tests with seeds (`cargo test`), which need no nightly toolchain.
 //!
 //! | driver | input | compared with |
 //! |---|---|---|

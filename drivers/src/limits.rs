@@ -42,8 +42,8 @@ impl Limit {
         }
     }
 
-    /// This, or none if it is an approach of mean planes that is nothing but rounding, as on a flat periodic surface. `states` are those
-    /// of the whole path.
+    /// This, or none if it is an approach of mean planes that is nothing but rounding, as on a flat periodic surface.
+    /// `states` are those of the whole path.
     pub(crate) fn unless_rounding(self, dense: &Dense, states: &[LoadingState]) -> Self {
         match (self, states.last()) {
             (Self::Approach(approach), Some(last))
@@ -72,8 +72,8 @@ impl Limit {
         }
     }
 
-    /// Whether a builder has to refuse it with this error, of a surface with this mean gap before it is loaded and this load under
-    /// which all nodes yield.
+    /// Whether a builder has to refuse it with this error, of a surface with this mean gap before it is loaded and this
+    /// load under which all nodes yield.
     pub(crate) fn deserves(self, error: &Error, grid: &Grid, unloaded: f64, most: f64) -> bool {
         match (self, error) {
             // Sums in whichever order.

@@ -14,8 +14,8 @@ use crate::files::{BEGINNINGS, FILES};
 use crate::scratch::{Scratch, bytes_of};
 use crate::verdict::{Tally, Verdict, Violation, ensure};
 
-/// Bytes of memory for each byte of a file. One byte can make a height of eight in several maps with masks, and a row of six
-/// bytes a point, which needs no more than sixteen nodes of a grid.
+/// Bytes of memory for each byte of a file. One byte can make a height of eight in several maps with masks, and a row
+/// of six bytes a point, which needs no more than sixteen nodes of a grid.
 const MEMORY: u64 = 64;
 /// What deflate can make of a byte at most, and what its two bytes of a height take when they are read.
 const INFLATED: u64 = 1032 * (1 + 8 / 2) + MEMORY;
@@ -26,9 +26,9 @@ const FILLED: usize = 1 << 12;
 /// Longest file.
 const LONGEST: usize = 1 << 16;
 
-/// Reads bytes as a file of heights: as they are, behind the beginning of some format, as a file that was tampered with, or as
-/// what the library has written. No panic, no more memory than the length of the file allows, nothing infinite in what was
-/// read; and what was read is the same when it is written and read again.
+/// Reads bytes as a file of heights: as they are, behind the beginning of some format, as a file that was tampered
+/// with, or as what the library has written. No panic, no more memory than the length of the file allows, nothing
+/// infinite in what was read; and what was read is the same when it is written and read again.
 ///
 /// # Errors
 ///

@@ -49,8 +49,8 @@ impl Sample {
         }
     }
 
-    /// Draws cells from square to 100 times as long as wide, heights and a half-space, in ordinary units; periodic cells are
-    /// `longest` times as long as wide at most.
+    /// Draws cells from square to 100 times as long as wide, heights and a half-space, in ordinary units; periodic
+    /// cells are `longest` times as long as wide at most.
     pub(crate) fn half_space(
         draw: &mut Draw<'_>,
         shape: (usize, usize),
@@ -60,8 +60,8 @@ impl Sample {
             .map_err(|error| Violation::new(format!("a sensible problem was refused: {error}")))
     }
 
-    /// Draws a hardness, one for all nodes or one for each: from one under which contacts are points to one that no pressure comes
-    /// to, some of them infinite.
+    /// Draws a hardness, one for all nodes or one for each: from one under which contacts are points to one that no
+    /// pressure comes to, some of them infinite.
     pub(crate) fn harden(&mut self, draw: &mut Draw<'_>) {
         let grid = self.kernel.grid();
         let height = self.surface.peak_to_valley();

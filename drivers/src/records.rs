@@ -34,8 +34,8 @@ const LONGEST: usize = 1 << 14;
 const ITERATED: f64 = 1e-10;
 
 /// Reads bytes as a record: as they are, or as a true record, whole or with members that were tampered with behind its
-/// checksums. No panic, bounded memory; a whole record comes back as it was, with the fields of its states; whatever was read
-/// can be written and read again, and goes on or says why not.
+/// checksums. No panic, bounded memory; a whole record comes back as it was, with the fields of its states; whatever
+/// was read can be written and read again, and goes on or says why not.
 ///
 /// # Errors
 ///

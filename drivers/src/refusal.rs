@@ -9,8 +9,8 @@ use crate::verdict::{Tally, Verdict, ensure};
 /// What is known of a problem that ended with an error.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Circumstances {
-    /// Rounding errors times the condition number: the error of a solution relative to itself. Infinite if the matrix is not
-    /// positive definite.
+    /// Rounding errors times the condition number: the error of a solution relative to itself. Infinite if the matrix
+    /// is not positive definite.
     pub(crate) error: f64,
     pub(crate) growth: ContactGrowth,
     /// Whether memory was limited.
@@ -49,8 +49,8 @@ impl Circumstances {
             }
             // The signs that are promised are looked at to 1e-9 or better.
             Error::NotMonotone { .. } => self.growth != ContactGrowth::Unknown && self.error > 1e-6,
-            // Contact is closed to 1e-10 of the lengths at ends of windows. Where nodes yield in them, up to 1.6 times this error was left,
-            // in gauges of a thousand cells' own displacements.
+            // Contact is closed to 1e-10 of the lengths at ends of windows. Where nodes yield in them, up to 1.6 times
+            // this error was left, in gauges of a thousand cells' own displacements.
             Error::Updater(UpdaterError::ContactNotClosed { .. }) => {
                 self.growth != ContactGrowth::Unknown && self.error > 1e-11
             }

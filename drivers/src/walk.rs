@@ -1,13 +1,13 @@
 //! A walk along the states of a path, each of which is looked at densely.
 //!
-//! Between two events the set of nodes in contact does not change and all is linear in the approach. So a path is right if
-//! at *both* ends of each interval no pressure and no gap is negative, and if the node of an event has neither pressure nor
-//! gap there: any other node that touched earlier would overlap at the end of the interval. The solution of a positive
-//! definite complementarity problem is the only one, so that this also fixes the order of events, up to nodes that touch at
-//! the same approach to rounding.
+//! Between two events the set of nodes in contact does not change and all is linear in the approach. So a path is right
+//! if at *both* ends of each interval no pressure and no gap is negative, and if the node of an event has neither
+//! pressure nor gap there: any other node that touched earlier would overlap at the end of the interval. The solution
+//! of a positive definite complementarity problem is the only one, so that this also fixes the order of events, up to
+//! nodes that touch at the same approach to rounding.
 //!
-//! With a hardness no pressure may exceed it, and where a node has yielded the gap must not be above zero. A node of an event comes
-//! from out of contact to elastic, or from elastic to yielded.
+//! With a hardness no pressure may exceed it, and where a node has yielded the gap must not be above zero. A node of an
+//! event comes from out of contact to elastic, or from elastic to yielded.
 
 use asperity::loading::ContactEvent;
 use asperity::{Grid, LoadingState};
@@ -42,11 +42,11 @@ pub(crate) struct Walk<'a> {
     contact: Vec<usize>,
     yielded: Vec<usize>,
     last: Option<LoadingState>,
-    /// The greatest error of a dense gap so far: a mean gap is carried by the closing rates of all contacts before, whose
-    /// errors add up to no more than that, since their ways add up to the approach.
+    /// The greatest error of a dense gap so far: a mean gap is carried by the closing rates of all contacts before,
+    /// whose errors add up to no more than that, since their ways add up to the approach.
     gap_error: f64,
-    /// Greatest gap that a node which ties had when it touched, or what was missing of a pressure displaces: of ties the lowest comes
-    /// first, and windows carry on what that leaves.
+    /// Greatest gap that a node which ties had when it touched, or what was missing of a pressure displaces: of ties
+    /// the lowest comes first, and windows carry on what that leaves.
     left_open: f64,
     /// The greatest norms so far, with a hardness.
     norms: Norms,
@@ -138,8 +138,8 @@ impl<'a> Walk<'a> {
     }
 
     /// How many nodes are about to touch or to leave at the last state, as far as rounding lets see: pressures of the
-    /// contact and gaps elsewhere that are zero to a hundred times the error they may have. All of them, where nothing can be
-    /// said.
+    /// contact and gaps elsewhere that are zero to a hundred times the error they may have. All of them, where nothing
+    /// can be said.
     pub(crate) fn on_the_edge(&self) -> usize {
         let Some((set, instant)) = self.last.and_then(|state| self.solved(&state)) else {
             return self.dense.nodes();

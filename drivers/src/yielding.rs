@@ -17,9 +17,9 @@ use crate::walk::{Demands, Walk};
 /// Gaps in contact that single loads leave, relative to the approach.
 const TOLERANCE: f64 = 1e-11;
 
-/// Draws a contact problem on a body whose contact only grows, and a hardness, and follows its path as [`paths()`](crate::paths())
-/// does. Where no node is about to change, a single load has the sets of the path, and the elastic path of the surface that is left
-/// ends in its state. Sometimes the path is written and read as well.
+/// Draws a contact problem on a body whose contact only grows, and a hardness, and follows its path as
+/// [`paths()`](crate::paths()) does. Where no node is about to change, a single load has the sets of the path, and the
+/// elastic path of the surface that is left ends in its state. Sometimes the path is written and read as well.
 ///
 /// # Errors
 ///
@@ -60,13 +60,14 @@ impl Trial<'_> {
         Ok(tally)
     }
 
-    /// Whether a solution for the same load has the same sets if its gaps are off by `error` where they should be none, and negative
-    /// by no more.
+    /// Whether a solution for the same load has the same sets if its gaps are off by `error` where they should be none,
+    /// and negative by no more.
     ///
-    /// Let d be the difference of its pressures from those of the state, of one sum, and that of gaps be w. Where d > 0 the
-    /// state's gap is not negative and the solution's no more than the error; where d < 0 the other way about. So
-    /// `dᵀ C d = dᵀ w ≤ error Σ |d|`, and no d is greater than `error √n` over the least eigenvalue, which is one over the norm of the
-    /// inverse or more. Then approaches differ by `|C| |d|` and the error, as gaps beside nodes that are elastic in both.
+    /// Let d be the difference of its pressures from those of the state, of one sum, and that of gaps be w. Where d > 0
+    /// the state's gap is not negative and the solution's no more than the error; where d < 0 the other way about. So
+    /// `dᵀ C d = dᵀ w ≤ error Σ |d|`, and no d is greater than `error √n` over the least eigenvalue, which is one over
+    /// the norm of the inverse or more. Then approaches differ by `|C| |d|` and the error, as gaps beside nodes that
+    /// are elastic in both.
     fn is_clear(&self, set: &ContactSet<'_>, instant: &Instant, error: f64) -> bool {
         let Some([norm, inverse]) = self.dense.norms() else {
             return false;

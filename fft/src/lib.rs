@@ -1,7 +1,8 @@
 //! Plans of Fourier transforms.
 //!
-//! rustfft and realfft are generic in the precision: each crate that plans with them compiles all their butterflies, which takes as
-//! long as the rest of a solver. Here they are compiled once, for both precisions. Those who call [`Plan`] compile no transform.
+//! rustfft and realfft are generic in the precision: each crate that plans with them compiles all their butterflies,
+//! which takes as long as the rest of a solver. Here they are compiled once, for both precisions. Those who call
+//! [`Plan`] compile no transform.
 //!
 //! ```
 //! use asperity_fft::{Fft, Plan};
@@ -79,7 +80,8 @@ mod tests {
         };
         // Products of small primes, primes, and powers of two.
         for n in [1, 2, 3, 4, 5, 6, 7, 12, 13, 16, 31, 37, 64, 67, 90, 97, 128, 210] {
-            // Each stage of a transform rounds sums that grow to n; a prime length goes by one of twice the length at least.
+            // Each stage of a transform rounds sums that grow to n; a prime length goes by one of twice the length at
+            // least.
             let close = 8.0 * epsilon * n as f64 * (1.0 + (n as f64).log2());
             let x: Vec<f64> = (0..n).map(|j| (0.618 * (j * j) as f64).fract()).collect();
             let narrow: Vec<T> = x.iter().map(|x| real(*x)).collect();

@@ -123,7 +123,8 @@ impl AdhesivePath {
     ///
     /// # Errors
     ///
-    /// [`AdhesionError::Behind`](crate::AdhesionError::Behind) for a target on the other side of the present state, and those of [`Self::unload`].
+    /// [`AdhesionError::Behind`](crate::AdhesionError::Behind) for a target on the other side of the present state, and
+    /// those of [`Self::unload`].
     pub fn unload_to(&mut self, target: ContactTarget) -> Result<(), Error> {
         let targets = Targets::of(&[target], &self.grid())?;
         self.turn(Direction::Unloading, targets)

@@ -1,36 +1,37 @@
 //! The path as a bed of independent springs, and superpositions of its increments.
 //!
-//! Between two events the pressure grows as that of a flat punch on the nodes in contact. Let `s` be the load that labels an
-//! increment of the path, $`\mathrm{d}p(s)`$ its pressure and $`\mathrm{d}\delta(s)`$ its approach. Many problems of contact
-//! that are not elastic or not normal have solutions of the form
+//! Between two events the pressure grows as that of a flat punch on the nodes in contact. Let `s` be the load that
+//! labels an increment of the path, $`\mathrm{d}p(s)`$ its pressure and $`\mathrm{d}\delta(s)`$ its approach. Many
+//! problems of contact that are not elastic or not normal have solutions of the form
 //! ```math
 //! p = \int \varphi(s)\, \mathrm{d}p(s)
 //! ```
-//! with a weight $`\varphi(s)`$ that obeys at each s a law of its own: a friction limit ([`slip`](crate::slip)), the creep of a
-//! material. All scalars of such a state are then in the record of the path, and its fields are sums of pressures of the path:
+//! with a weight $`\varphi(s)`$ that obeys at each s a law of its own: a friction limit ([`slip`](crate::slip)), the
+//! creep of a material. All scalars of such a state are then in the record of the path, and its fields are sums of
+//! pressures of the path:
 //! ```math
 //! W = \int \varphi\, \mathrm{d}s, \qquad
 //! \delta = \int \varphi\, \mathrm{d}\delta(s), \qquad
 //! \bar g = \bar g_0 + \int \varphi\, \mathrm{d}\bar g(s), \qquad
 //! U = \int \varphi(s) \left[ \int_s \varphi\, \mathrm{d}\delta \right] \mathrm{d}s
 //! ```
-//! The last follows from $`\mathrm{d}p(s) \cdot \mathrm{d}u(t) = \mathrm{d}s\, \mathrm{d}\delta(t) / \Delta A`$ for s < t: nodes that
-//! carry dp(s) are in contact at t, and move as one.
+//! The last follows from $`\mathrm{d}p(s) \cdot \mathrm{d}u(t) = \mathrm{d}s\, \mathrm{d}\delta(t) / \Delta A`$ for s <
+//! t: nodes that carry dp(s) are in contact at t, and move as one.
 //!
 //! # Springs
 //!
-//! In other words, the contact *is* a bed of springs that know nothing of each other. The one of event n has the stiffness
-//! $`\Delta K_n = K_n - K_{n-1} > 0`$ and the initial gap δₙ, the approach at which node n touches:
-//! `W = Σ ΔKₙ (δ − δₙ)` over the springs that are reached. For bodies of revolution this is the method of dimensionality
-//! reduction (Popov & Heß, *Method of Dimensionality Reduction in Contact Mechanics and Friction*, Springer 2015). For a
-//! discretised surface it holds as it is, whatever its shape.
+//! In other words, the contact *is* a bed of springs that know nothing of each other. The one of event n has the
+//! stiffness $`\Delta K_n = K_n - K_{n-1} > 0`$ and the initial gap δₙ, the approach at which node n touches: `W = Σ
+//! ΔKₙ (δ − δₙ)` over the springs that are reached. For bodies of revolution this is the method of dimensionality
+//! reduction (Popov & Heß, *Method of Dimensionality Reduction in Contact Mechanics and Friction*, Springer 2015). For
+//! a discretised surface it holds as it is, whatever its shape.
 //!
 //! # What it takes
 //!
-//! Two properties of the contacts of the path: pressures and contact only grow ($`\mathrm{d}p \ge 0`$), and gaps only close. Every path
-//! has them on which no node leaves the contact or yields; others are [refused](crate::BedError). On a periodic half-space,
-//! which has no distant point at rest, the approach is that of the mean planes and the stiffness the interfacial one. That becomes
-//! infinite in full contact, so that everything here is written in loads.
+//! Two properties of the contacts of the path: pressures and contact only grow ($`\mathrm{d}p \ge 0`$), and gaps only
+//! close. Every path has them on which no node leaves the contact or yields; others are [refused](crate::BedError). On
+//! a periodic half-space, which has no distant point at rest, the approach is that of the mean planes and the stiffness
+//! the interfacial one. That becomes infinite in full contact, so that everything here is written in loads.
 //!
 //! ```
 //! use asperity::bed::{Bed, Superposition};
@@ -109,8 +110,8 @@ pub struct BedState {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Spring {
-    /// Stiffness ΔK \[N/m\]. On a path without a factor, whose stiffnesses carry errors, it may have any sign, and only sums over
-    /// many springs say something. On a periodic half-space that of the last node is infinite.
+    /// Stiffness ΔK \[N/m\]. On a path without a factor, whose stiffnesses carry errors, it may have any sign, and only
+    /// sums over many springs say something. On a periodic half-space that of the last node is infinite.
     pub stiffness: f64,
     /// Initial gap \[m\]: the approach at which it is reached.
     pub gap: f64,
@@ -123,9 +124,9 @@ impl<'a> Bed<'a> {
     ///
     /// # Errors
     ///
-    /// [`BedError::Empty`]; [`BedError::NotFromFirstTouch`]; [`BedError::NotElasticGrowth`] if a node leaves the contact or
-    /// yields; [`BedError::NotMonotone`] for loads or approaches that fall, mean gaps that rise, and scalars that are not finite;
-    /// [`BedError::NoStiffness`]; [`Error::NotFinite`] if an energy overflows.
+    /// [`BedError::Empty`]; [`BedError::NotFromFirstTouch`]; [`BedError::NotElasticGrowth`] if a node leaves the
+    /// contact or yields; [`BedError::NotMonotone`] for loads or approaches that fall, mean gaps that rise, and scalars
+    /// that are not finite; [`BedError::NoStiffness`]; [`Error::NotFinite`] if an energy overflows.
     pub fn new(history: &'a History) -> Result<Self, Error> {
         let states = history.states();
         let Some(first) = states.first() else {
@@ -206,8 +207,8 @@ impl<'a> Bed<'a> {
         &self.stiffnesses
     }
 
-    /// The greatest load that the bed can be read at \[N\]: that of the last state, and any behind full contact, where all is
-    /// linear.
+    /// The greatest load that the bed can be read at \[N\]: that of the last state, and any behind full contact, where
+    /// all is linear.
     #[must_use]
     pub fn greatest_load(&self) -> f64 {
         if self.is_full { f64::INFINITY } else { self.last_load() }
@@ -315,8 +316,8 @@ impl<'a> Bed<'a> {
         }
     }
 
-    /// The state of the path at a load, with which [`LoadingPath::fields_at`](crate::LoadingPath::fields_at) and its like
-    /// compute fields.
+    /// The state of the path at a load, with which [`LoadingPath::fields_at`](crate::LoadingPath::fields_at) and its
+    /// like compute fields.
     ///
     /// # Errors
     ///

@@ -43,7 +43,8 @@ pub struct Superposed {
 }
 
 impl Superposition {
-    /// Pieces of a path from first touch on: each ends at a load \[N\] and has a weight. A piece without length is left out.
+    /// Pieces of a path from first touch on: each ends at a load \[N\] and has a weight. A piece without length is left
+    /// out.
     ///
     /// # Errors
     ///
@@ -107,8 +108,8 @@ impl Superposition {
 
     /// Its pressure \[Pa\].
     ///
-    /// Each end of a piece takes a field of the path: a backward substitution with a factor, one solution on a known contact from
-    /// a [record](crate::record::LoadingRecord::replay).
+    /// Each end of a piece takes a field of the path: a backward substitution with a factor, one solution on a known
+    /// contact from a [record](crate::record::LoadingRecord::replay).
     ///
     /// # Errors
     ///

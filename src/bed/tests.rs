@@ -12,7 +12,8 @@ use crate::{
     SelfAffine, test_chain,
 };
 
-/// Nodes 0 and 2 touch at the approaches 0 and 1, each a spring of 1/2 N/m: a quarter of a pascal on 2 m² for each metre.
+/// Nodes 0 and 2 touch at the approaches 0 and 1, each a spring of 1/2 N/m: a quarter of a pascal on 2 m² for each
+/// metre.
 fn chain() -> Result<(LoadingSolver, History), Error> {
     let (surface, kernel) = (test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?, test_chain::kernel(4)?);
     let mut path = LoadingSolver::builder(&surface, &kernel).max_approach(3.0).build()?;
@@ -224,8 +225,8 @@ fn what_lies_outside_is_refused() -> Result<(), Error> {
     Ok(())
 }
 
-/// Behind full contact a free half-space goes on as a punch; under a periodic one the mean planes stop, and no approach can be
-/// asked for.
+/// Behind full contact a free half-space goes on as a punch; under a periodic one the mean planes stop, and no approach
+/// can be asked for.
 #[test]
 fn full_contact_goes_on() -> Result<(), Error> {
     let grid = Grid::square(6, 1.0)?;

@@ -22,8 +22,8 @@ pub struct Certificate {
     pub complementarity: f64,
     /// Difference between `ΔA Σ p` and the load.
     pub load_error: f64,
-    /// Greatest pressure over the hardness of its node, less 1: 0 where nodes have yielded, above it by rounding; `None` without a
-    /// hardness. Where nodes have yielded their plastic depth is no gap.
+    /// Greatest pressure over the hardness of its node, less 1: 0 where nodes have yielded, above it by rounding;
+    /// `None` without a hardness. Where nodes have yielded their plastic depth is no gap.
     pub excess_pressure: Option<f64>,
     /// The length that gaps are relative to \[m\]: the greatest of the rms height Sq, the approach δ and, on a
     /// periodic half-space of arbitrary mean displacement, `C(0, 0) p̄` with p̄ the mean pressure: far

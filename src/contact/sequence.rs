@@ -8,9 +8,9 @@ use crate::{Error, Grid};
 
 /// The nodes in contact, in the order in which they joined.
 ///
-/// A path adds to its sequence, and takes from it. Every change gives the sequence a new [`revision`](Self::revision), a
-/// number that no other content of any sequence has had: what was computed from a sequence belongs to all that have its
-/// revision.
+/// A path adds to its sequence, and takes from it. Every change gives the sequence a new [`revision`](Self::revision),
+/// a number that no other content of any sequence has had: what was computed from a sequence belongs to all that have
+/// its revision.
 ///
 /// ```
 /// use asperity::contact::ContactSequence;

@@ -10,7 +10,8 @@ use crate::Grid;
 ///
 /// In full contact, that of a flat surface under no load too, the mean gap is exactly 0 and the interfacial stiffness
 /// infinite. Nodes that touch at one approach have a state each, of which only the last lasts: the others have the
-/// stiffnesses of the nodes taken so far, without a factor nearly. Where nodes may yield, they have those of equal steps without one.
+/// stiffnesses of the nodes taken so far, without a factor nearly. Where nodes may yield, they have those of equal
+/// steps without one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -37,8 +38,8 @@ pub struct ContactState {
     pub interfacial_stiffness: Option<f64>,
     /// Elastic energy `U = ½ ΔA Σ p u` \[J\], which comes back on unloading. Where nothing yields it is `∫ W dδ`.
     pub energy: f64,
-    /// What has yielded, with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one. A single load gives its fields
-    /// too ([`ContactFields`](crate::contact::ContactFields)).
+    /// What has yielded, with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one. A single load
+    /// gives its fields too ([`ContactFields`](crate::contact::ContactFields)).
     pub plastic: Option<PlasticState>,
 }
 
@@ -55,13 +56,13 @@ pub struct PlasticState {
     pub volume: f64,
     /// Energy that is lost, `ΔA Σ H v` \[J\].
     pub work: f64,
-    /// dV/dW on further loading \[m³/N\]; 0 on a plateau, where no node is elastic and the load does not change, and of a single
-    /// load for which stiffnesses were not asked.
+    /// dV/dW on further loading \[m³/N\]; 0 on a plateau, where no node is elastic and the load does not change, and of
+    /// a single load for which stiffnesses were not asked.
     pub volume_per_load: f64,
     /// The same of the work \[m\].
     pub work_per_load: f64,
-    /// Normal stiffness dW/dδ on *unloading* \[N/m\]: of all nodes in contact, also those that have yielded. It is what conducts. `None` on a
-    /// periodic half-space, and unless it was asked for:
+    /// Normal stiffness dW/dδ on *unloading* \[N/m\]: of all nodes in contact, also those that have yielded. It is what
+    /// conducts. `None` on a periodic half-space, and unless it was asked for:
     /// [`LoadingPath::add_unloading_stiffness`](crate::LoadingPath::add_unloading_stiffness).
     pub contact_unloading_stiffness: Option<f64>,
     /// The same for the interfacial stiffness −dW/dḡ \[N/m\]: infinite in full contact. `None` unless it was asked for.
@@ -69,8 +70,8 @@ pub struct PlasticState {
 }
 
 impl ContactState {
-    /// A state made of data, with so many nodes of a grid in contact, no stiffness and no energy; these are fields to be
-    /// set.
+    /// A state made of data, with so many nodes of a grid in contact, no stiffness and no energy; these are fields to
+    /// be set.
     #[must_use]
     pub fn new(grid: &Grid, contact_nodes: usize, approach: f64, load: f64, mean_gap: f64) -> Self {
         Self {
@@ -254,8 +255,8 @@ mod tests {
         Ok(())
     }
 
-    /// 4 N more: 1 m of approach at 4 N/m, 2 m of mean gap at 2 N/m, and the work of a mean of 12 N over 1 m. The same state
-    /// whichever of the three is asked for.
+    /// 4 N more: 1 m of approach at 4 N/m, 2 m of mean gap at 2 N/m, and the work of a mean of 12 N over 1 m. The same
+    /// state whichever of the three is asked for.
     #[test]
     fn the_same_contact_at_another_load() -> Result<(), crate::Error> {
         let before = state()?;

@@ -14,19 +14,19 @@ pub enum ContactTarget {
     /// As many nodes in contact as fit into this fraction (above 0, at most 1) of the nominal area:
     /// [`Grid::nodes_in`](crate::Grid::nodes_in).
     ///
-    /// Nodes that touch at the same load, as on symmetric shapes, make some numbers unreachable: a path
-    /// then takes them one after the other, and the solver for one load the nearest number there is; of fewer nodes than touch
-    /// first that is theirs, under some load that is too small for others to touch.
-    /// On a body whose contact shrinks again ([`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown)) more load need
-    /// not mean more nodes: there the solver for one load may take the nearest number at another load, where this one is jumped
-    /// over, or end in [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number. For more nodes than
-    /// are ever in contact it ends so, too.
+    /// Nodes that touch at the same load, as on symmetric shapes, make some numbers unreachable: a path then takes them
+    /// one after the other, and the solver for one load the nearest number there is; of fewer nodes than touch first
+    /// that is theirs, under some load that is too small for others to touch. On a body whose contact shrinks again
+    /// ([`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown)) more load need not mean more nodes: there the solver
+    /// for one load may take the nearest number at another load, where this one is jumped over, or end in
+    /// [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number. For more nodes than are ever
+    /// in contact it ends so, too.
     AreaFraction(f64),
     /// This mean gap \[m\], below that of surfaces that just touch.
     ///
-    /// The solver for one load finds it as exactly as the gaps of its solutions are: to its tolerance times the approach,
-    /// or times C(0, 0) p̄ on a body whose mean displacement is
-    /// [arbitrary](crate::kernel::MeanDisplacement::Arbitrary), if that is more; but to no less than 10⁻¹⁴ of the mean gap
-    /// without load, which is rounding.
+    /// The solver for one load finds it as exactly as the gaps of its solutions are: to its tolerance times the
+    /// approach, or times C(0, 0) p̄ on a body whose mean displacement is
+    /// [arbitrary](crate::kernel::MeanDisplacement::Arbitrary), if that is more; but to no less than 10⁻¹⁴ of the mean
+    /// gap without load, which is rounding.
     MeanGap(f64),
 }

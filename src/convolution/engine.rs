@@ -30,7 +30,8 @@ struct Filter<T: Real> {
     boundary: Boundary,
     transforms: Transforms<T>,
     parity: Parity,
-    /// Real symbol, or i times an imaginary one, py values for each of the px / 2 + 1 columns, which are stored one by one.
+    /// Real symbol, or i times an imaginary one, py values for each of the px / 2 + 1 columns, which are stored one by
+    /// one.
     symbol: Vec<T>,
 }
 
@@ -73,8 +74,9 @@ impl Engine<f64> {
         Self::new((table.grid(), table.boundary()), Parity::Even, &coefficient, waves)
     }
 
-    /// Prepares the convolution with coefficients at offsets with 0 ≤ dj < ny, and |di| < nx, or 0 ≤ di < nx where x repeats. What `waves`
-    /// gives for 0 ≤ kx ≤ px / 2 and 0 ≤ ky < py is added to their symbol, or to its imaginary part.
+    /// Prepares the convolution with coefficients at offsets with 0 ≤ dj < ny, and |di| < nx, or 0 ≤ di < nx where x
+    /// repeats. What `waves` gives for 0 ≤ kx ≤ px / 2 and 0 ≤ ky < py is added to their symbol, or to its imaginary
+    /// part.
     ///
     /// # Errors
     ///

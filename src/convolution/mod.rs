@@ -117,8 +117,8 @@ impl Convolution {
         Ok(Self { engine: Engine::from_table(table)? })
     }
 
-    /// Of any quantity that goes with the pressure, by its coefficients at offsets and what `waves` adds to their symbol: see
-    /// [`Engine::new`].
+    /// Of any quantity that goes with the pressure, by its coefficients at offsets and what `waves` adds to their
+    /// symbol: see [`Engine::new`].
     ///
     /// # Errors
     ///
@@ -166,8 +166,8 @@ impl Convolution {
         }
     }
 
-    /// A lower bound \[m/Pa\] of the eigenvalues of the influence matrix of any nodes, which is a part of a circulant one with
-    /// the values of the symbol as eigenvalues; says nothing unless it is positive.
+    /// A lower bound \[m/Pa\] of the eigenvalues of the influence matrix of any nodes, which is a part of a circulant
+    /// one with the values of the symbol as eigenvalues; says nothing unless it is positive.
     pub(crate) fn least_eigenvalue(&self) -> f64 {
         self.engine.least_symbol()
     }
@@ -263,11 +263,11 @@ impl SingleConvolution {
         self.unit
     }
 
-    /// What the rounding errors of a spectrum come to: the root mean square error of displacements \[m\] under pressures of
-    /// which the sum of squares is 1, over that of a rounding.
+    /// What the rounding errors of a spectrum come to: the root mean square error of displacements \[m\] under
+    /// pressures of which the sum of squares is 1, over that of a rounding.
     ///
-    /// Rounding errors spread over all waves alike, and the symbol makes the more of them the longer the wave. Pressures of short
-    /// waves displace little, and yet what they spoil is this.
+    /// Rounding errors spread over all waves alike, and the symbol makes the more of them the longer the wave.
+    /// Pressures of short waves displace little, and yet what they spoil is this.
     pub(crate) fn noise(&self) -> f64 {
         self.noise
     }

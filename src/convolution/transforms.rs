@@ -47,7 +47,8 @@ impl<T: Real> Transforms<T> {
     pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
         let (nx, ny) = grid.shape();
         let [x_repeats, y_repeats] = boundary.repeats();
-        // A period is the grid's, however slow a length that is. A real transform of even length is a complex one of half that length.
+        // A period is the grid's, however slow a length that is. A real transform of even length is a complex one of
+        // half that length.
         let px = if x_repeats { nx } else { 2 * fast_size(nx) };
         let py = if y_repeats { ny } else { fast_size(2 * ny - 1) };
         Self {
@@ -194,8 +195,9 @@ impl<T: Real> Transforms<T> {
 
     /// One column of the symbol, given the spectra of kernel rows dj = 0, 1, …, ny − 1 there.
     ///
-    /// Reciprocity, C(−di, −dj) = C(di, dj), makes the spectrum of row −dj the conjugate of that of
-    /// row dj, and the symbol real; with the other sign, minus that, and the symbol imaginary. Without padding row −dj is row ny − dj, which is there already. The symbol includes the 1 / (px py) of the inverse transforms.
+    /// Reciprocity, C(−di, −dj) = C(di, dj), makes the spectrum of row −dj the conjugate of that of row dj, and the
+    /// symbol real; with the other sign, minus that, and the symbol imaginary. Without padding row −dj is row ny − dj,
+    /// which is there already. The symbol includes the 1 / (px py) of the inverse transforms.
     pub(super) fn symbol_column(
         &self,
         (entries, parity): (&[Complex<T>], Parity),

@@ -32,7 +32,8 @@ impl ControlHistory {
     }
 }
 
-/// How steps are spread over time: short behind each corner, and longer from step to step, as the memory of the corner fades.
+/// How steps are spread over time: short behind each corner, and longer from step to step, as the memory of the corner
+/// fades.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steps {
     /// The first step behind a corner, over the shortest relaxation time.
@@ -57,7 +58,8 @@ impl Steps {
         Self { first: 0.5 * self.first, growth: self.growth.sqrt(), least: 2 * self.least }
     }
 
-    /// The times of the steps from the first corner to `end`, all corners up to there among them. A jump has its time once.
+    /// The times of the steps from the first corner to `end`, all corners up to there among them. A jump has its time
+    /// once.
     ///
     /// # Errors
     ///
@@ -109,11 +111,11 @@ impl Steps {
 }
 
 impl ViscoelasticBed<'_> {
-    /// Follows a history, and returns the states at some times, ascending, each just after a jump there. Corners on the way are steps of
-    /// their own; else the steps are from time to time.
+    /// Follows a history, and returns the states at some times, ascending, each just after a jump there. Corners on the
+    /// way are steps of their own; else the steps are from time to time.
     ///
-    /// A bed that has made no step yet begins with the history. Another one goes on with it from its present time, at which
-    /// corners have been passed.
+    /// A bed that has made no step yet begins with the history. Another one goes on with it from its present time, at
+    /// which corners have been passed.
     ///
     /// # Errors
     ///

@@ -27,8 +27,8 @@ pub struct Cycle {
     pub path: Vec<(f64, f64)>,
     /// How many cycles were run.
     pub cycles: usize,
-    /// How far the energy lost is from that of the steady cycle, over the product of amplitudes, or the amplitude of the approach, over itself: the greater
-    /// one, an estimate from how fast the changes from cycle to cycle die out.
+    /// How far the energy lost is from that of the steady cycle, over the product of amplitudes, or the amplitude of
+    /// the approach, over itself: the greater one, an estimate from how fast the changes from cycle to cycle die out.
     pub distance: f64,
 }
 
@@ -58,8 +58,9 @@ struct Approach {
 }
 
 impl Approach {
-    /// What is still to come after a cycle: a geometric series with the ratio of the slowest mode, from the greatest change so far as that mode would have
-    /// faded. The last changes alone, and their ratio, say too little: modes hide and cancel each other.
+    /// What is still to come after a cycle: a geometric series with the ratio of the slowest mode, from the greatest
+    /// change so far as that mode would have faded. The last changes alone, and their ratio, say too little: modes hide
+    /// and cancel each other.
     fn distance(&mut self, number: f64, slowest: f64) -> f64 {
         let Some(before) = self.before.replace(number) else {
             return f64::INFINITY;
@@ -72,10 +73,11 @@ impl Approach {
 
 /// How many changes of a cycle each term of creep goes at once, so that slow ones come to the steady cycle too.
 ///
-/// The strain s of a term changes in a cycle by `(1 − e^(−T/τ)) (f − s)`, f being a mean of the force on its element. In the steady cycle s = f. As
-/// strains grow, forces on elements in full contact fall: f − s as a function of the strains has slopes from −1, for an element whose force is given, to
-/// −J(∞)/J(0), for one whose compression is. Hence a step of `J(0)/J(∞)` times f − s never overshoots, and leaves at most `1 − J(0)/J(∞)` of what was left.
-/// A cycle by itself is such a step for the terms that it changes by more.
+/// The strain s of a term changes in a cycle by `(1 − e^(−T/τ)) (f − s)`, f being a mean of the force on its element.
+/// In the steady cycle s = f. As strains grow, forces on elements in full contact fall: f − s as a function of the
+/// strains has slopes from −1, for an element whose force is given, to −J(∞)/J(0), for one whose compression is. Hence
+/// a step of `J(0)/J(∞)` times f − s never overshoots, and leaves at most `1 − J(0)/J(∞)` of what was left. A cycle by
+/// itself is such a step for the terms that it changes by more.
 struct Ahead {
     /// For each term, at least 1.
     changes: Vec<f64>,
@@ -122,18 +124,19 @@ impl ViscoelasticBed<'_> {
         Ok(())
     }
 
-    /// Cycles the load around a mean until the cycle is the steady one, within the tolerance. The bed goes on from its present state, so that
-    /// [`settle`](Self::settle) before, or a sweep from period to period, saves cycles.
+    /// Cycles the load around a mean until the cycle is the steady one, within the tolerance. The bed goes on from its
+    /// present state, so that [`settle`](Self::settle) before, or a sweep from period to period, saves cycles.
     ///
-    /// A term that is much slower than the period goes many cycles ahead after each that is run: it takes some `J(∞)/J(0)` cycles to come nearer by the
-    /// factor e, however slow it is. The time of the bed counts the cycles that were run.
+    /// A term that is much slower than the period goes many cycles ahead after each that is run: it takes some
+    /// `J(∞)/J(0)` cycles to come nearer by the factor e, however slow it is. The time of the bed counts the cycles
+    /// that were run.
     ///
     /// # Errors
     ///
-    /// [`CreepError::NotSteady`] if the cycle is not as near to the steady one as the tolerance asks for after the most cycles;
-    /// [`CreepError::NoSteadyCycle`] for bodies that flow; [`Error::NotPositive`] for amplitudes and periods that are not;
-    /// [`Error::OutOfRange`] for a mean load below the amplitude, fewer than 8 steps or more than a million, and no cycles; those of
-    /// [`step`](Self::step).
+    /// [`CreepError::NotSteady`] if the cycle is not as near to the steady one as the tolerance asks for after the most
+    /// cycles; [`CreepError::NoSteadyCycle`] for bodies that flow; [`Error::NotPositive`] for amplitudes and periods
+    /// that are not; [`Error::OutOfRange`] for a mean load below the amplitude, fewer than 8 steps or more than a
+    /// million, and no cycles; those of [`step`](Self::step).
     pub fn cycle(
         &mut self,
         mean_load: f64,

@@ -41,11 +41,11 @@ impl ExponentialSum {
 
     /// The first z up to `end` from which on the sum is negative, by more than rounding.
     ///
-    /// Numbers so far apart that bounds overflow have no answer: then the first interval without one counts as negative, since
-    /// that is what is refused.
+    /// Numbers so far apart that bounds overflow have no answer: then the first interval without one counts as
+    /// negative, since that is what is refused.
     ///
-    /// Intervals are halved until bounds of the function, its derivative or its second derivative decide: until it has one
-    /// sign, is monotone, convex or concave. Roots are then between ends of different sign.
+    /// Intervals are halved until bounds of the function, its derivative or its second derivative decide: until it has
+    /// one sign, is monotone, convex or concave. Roots are then between ends of different sign.
     pub(super) fn first_negative(&self, end: f64) -> Option<f64> {
         let first = self.derivative();
         let all = [self.clone(), first.derivative(), first];
@@ -147,8 +147,8 @@ mod tests {
         assert_eq!(sum(0.0, 0.0, &[]).first_negative(1.0), None);
     }
 
-    /// (x − ½)² − d with x = e⁻ᶻ dips below zero by d: from the greater root of x on, between z = 0.69 ± 2 √d. With d = 0 it
-    /// touches zero, and is not negative.
+    /// (x − ½)² − d with x = e⁻ᶻ dips below zero by d: from the greater root of x on, between z = 0.69 ± 2 √d. With d =
+    /// 0 it touches zero, and is not negative.
     #[test]
     fn a_narrow_dip_is_found_and_a_touch_is_none() {
         for depth in [1e-2, 1e-6, 1e-10, 1e-14] {

@@ -5,17 +5,17 @@ use super::hereditary::{Hereditary, Place};
 use super::prony::{Prony, PronyTerm};
 use super::weights::Weights;
 
-/// The effective load W′ over time, which is the load of the elastic path whose contact there is, and the loads Wₖ at which that path has its
-/// knots.
+/// The effective load W′ over time, which is the load of the elastic path whose contact there is, and the loads Wₖ at
+/// which that path has its knots.
 #[derive(Debug, Clone)]
 pub(super) struct Growth<'a> {
     knots: &'a [f64],
     load: Hereditary,
 }
 
-/// What rounding may make of W′, relative to it: compliances are divided by what is left of the modulus, which multiplies their rounding
-/// of some 10⁻¹⁶, so that this is enough down to a thousandth of the modulus. What is closer to the last knot is that knot: a path to the
-/// load `W / (1 − Σ g)` is enough for a load W that is held for ever.
+/// What rounding may make of W′, relative to it: compliances are divided by what is left of the modulus, which
+/// multiplies their rounding of some 10⁻¹⁶, so that this is enough down to a thousandth of the modulus. What is closer
+/// to the last knot is that knot: a path to the load `W / (1 − Σ g)` is enough for a load W that is held for ever.
 const ROUNDING: f64 = 1e-12;
 
 /// A stretch of time in which contact grows between two knots.
@@ -56,8 +56,8 @@ impl Kernel {
         self.constant + terms.sum::<f64>()
     }
 
-    /// `∫ R(left + to − z) f(z) dz` from `from` to `to`, of a rate f: each pair of exponentials in closed form, without differences of
-    /// nearly equal ones.
+    /// `∫ R(left + to − z) f(z) dz` from `from` to `to`, of a rate f: each pair of exponentials in closed form, without
+    /// differences of nearly equal ones.
     fn over(&self, rate: &ExponentialSum, (from, to): (f64, f64), left: f64) -> f64 {
         let length = to - from;
         let mean = |z: f64| Weights::of(z).mean;
@@ -115,8 +115,8 @@ impl<'a> Growth<'a> {
         times
     }
 
-    /// Mean weights of the increments from knot to knot, `φ = R(t − s)` with s the time at which each was made: the load at the
-    /// end of each increment, and its weight. The last ends at the greatest load, W′(until).
+    /// Mean weights of the increments from knot to knot, `φ = R(t − s)` with s the time at which each was made: the
+    /// load at the end of each increment, and its weight. The last ends at the greatest load, W′(until).
     pub(super) fn increments(
         &self,
         kernel: &Kernel,
@@ -208,8 +208,8 @@ impl<'a> Growth<'a> {
         }
     }
 
-    /// When W′ reaches a value between two times since a corner, if it has not reached it at the first and has at the second:
-    /// Newton's method between bounds.
+    /// When W′ reaches a value between two times since a corner, if it has not reached it at the first and has at the
+    /// second: Newton's method between bounds.
     pub(super) fn time_since(&self, corner: usize, value: f64, (from, to): (f64, f64)) -> f64 {
         let (mut below, mut above) = (from, to);
         let mut since = from;

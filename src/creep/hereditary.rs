@@ -11,8 +11,8 @@ use super::weights::Weights;
 /// \tau_m \dot s_m + s_m = x .
 /// ```
 ///
-/// The internal variables s and their lags x − s are kept at each corner; between two of them they are in closed form. Both are, since
-/// neither can be had from the other without loss of digits: s for y itself, the lag for its rate.
+/// The internal variables s and their lags x − s are kept at each corner; between two of them they are in closed form.
+/// Both are, since neither can be had from the other without loss of digits: s for y itself, the lag for its rate.
 #[derive(Debug, Clone)]
 pub(super) struct Hereditary {
     corners: Vec<(f64, f64)>,
@@ -191,7 +191,8 @@ impl Hereditary {
         (UNDERFLOWS * slowest).min(f64::MAX / 8.0)
     }
 
-    /// An upper bound on the time since a corner, behind which x is held, until y reaches a value; `None` if it never does.
+    /// An upper bound on the time since a corner, behind which x is held, until y reaches a value; `None` if it never
+    /// does.
     pub(super) fn reaches(&self, corner: usize, value: f64) -> Option<f64> {
         let long = self.long();
         if self.response(Place { corner, since: long }).0 >= value {

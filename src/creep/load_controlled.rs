@@ -12,13 +12,13 @@ use crate::{CreepError, Error};
 
 /// The contact of viscoelastic bodies under a history of load. See the [module](super).
 ///
-/// With $`W_e(t) = E^\ast \int J(t - s)\, \mathrm{d}W(s)`$ the *effective load*: while it has not fallen, contact, gaps, approach and
-/// mean gap at t are those of the elastic path at $`W_e(t)`$, and the pressure is
+/// With $`W_e(t) = E^\ast \int J(t - s)\, \mathrm{d}W(s)`$ the *effective load*: while it has not fallen, contact,
+/// gaps, approach and mean gap at t are those of the elastic path at $`W_e(t)`$, and the pressure is
 /// ```math
 /// p(t) = \frac{1}{E^\ast} \int R(t - s)\, \mathrm{d}p_e(s) \ge 0,
 /// ```
-/// $`p_e(s)`$ being that of the path at $`W_e(s)`$ (Lee and Radok, J. Appl. Mech. 27 (1960) 438, for spheres). It is the effective load
-/// that must not fall: a load that is taken away slowly enough passes.
+/// $`p_e(s)`$ being that of the path at $`W_e(s)`$ (Lee and Radok, J. Appl. Mech. 27 (1960) 438, for spheres). It is
+/// the effective load that must not fall: a load that is taken away slowly enough passes.
 ///
 /// ```
 /// use asperity::bed::Bed;
@@ -113,8 +113,8 @@ impl<'a> Creep<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a time that is no number; [`CreepError::ContactRecedes`] if the effective load has fallen before;
-    /// [`CreepError::PathEnds`] if it is beyond the path.
+    /// [`Error::OutOfRange`] for a time that is no number; [`CreepError::ContactRecedes`] if the effective load has
+    /// fallen before; [`CreepError::PathEnds`] if it is beyond the path.
     pub fn at(&self, time: f64) -> Result<CreepState, Error> {
         self.check(time)?;
         let effective_load = self.effective_load(time);
@@ -135,8 +135,8 @@ impl<'a> Creep<'a> {
         self.bed.path_state(self.effective_load(time))
     }
 
-    /// When each knot of the path is reached \[s\]: state k of its history at the k-th of these times. As many as are reached before
-    /// contact recedes, if ever.
+    /// When each knot of the path is reached \[s\]: state k of its history at the k-th of these times. As many as are
+    /// reached before contact recedes, if ever.
     #[must_use]
     pub fn times(&self) -> Vec<f64> {
         self.growth.times(self.recession.map_or(f64::INFINITY, |recession| recession.time))
@@ -154,11 +154,11 @@ impl<'a> Creep<'a> {
         times.get(1).copied()
     }
 
-    /// The pressure at a time, as increments of the path with the weights `R(t − s)/E*`, in at most so many pieces of one weight
-    /// each: [`Superposition::pressure`] makes the field of it.
+    /// The pressure at a time, as increments of the path with the weights `R(t − s)/E*`, in at most so many pieces of
+    /// one weight each: [`Superposition::pressure`] makes the field of it.
     ///
-    /// With as many pieces as the path has states it is exact. Each piece takes a field of the path; twenty leave some 10⁻³ of the
-    /// greatest pressure, and a third of it or less each time their number is doubled.
+    /// With as many pieces as the path has states it is exact. Each piece takes a field of the path; twenty leave some
+    /// 10⁻³ of the greatest pressure, and a third of it or less each time their number is doubled.
     ///
     /// # Errors
     ///

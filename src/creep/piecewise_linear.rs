@@ -4,8 +4,9 @@ use crate::Error;
 
 /// A load \[N\] or an approach \[m\] over time \[s\]: linear between corners, and held behind the last.
 ///
-/// Two corners at one time are a jump; of more than two at one time the first and the last count, for what happens in no time at all
-/// leaves no trace. Before the first corner the quantity is 0, so that a first corner at another value is a jump too.
+/// Two corners at one time are a jump; of more than two at one time the first and the last count, for what happens in
+/// no time at all leaves no trace. Before the first corner the quantity is 0, so that a first corner at another value
+/// is a jump too.
 ///
 /// ```
 /// use asperity::creep::PiecewiseLinear;
@@ -29,8 +30,8 @@ impl PiecewiseLinear {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] without a corner, for times and values that are not finite, for a time before that of the corner
-    /// before it, and where a value changes too fast for double precision.
+    /// [`Error::OutOfRange`] without a corner, for times and values that are not finite, for a time before that of the
+    /// corner before it, and where a value changes too fast for double precision.
     pub fn new(corners: impl IntoIterator<Item = (f64, f64)>) -> Result<Self, Error> {
         let mut all = Self { corners: Vec::new() };
         for (time, value) in corners {
@@ -89,7 +90,8 @@ impl PiecewiseLinear {
         self.to(value, 0.0)
     }
 
-    /// Then cycles around the last value: `x + a sin(2πt/T)` for so many periods T, in straight pieces, so many a period.
+    /// Then cycles around the last value: `x + a sin(2πt/T)` for so many periods T, in straight pieces, so many a
+    /// period.
     ///
     /// # Errors
     ///

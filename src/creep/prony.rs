@@ -22,14 +22,14 @@ pub struct PronyTerm {
 /// J(t) = j_0 + \sum_m j_m \left(1 - e^{-t/\tau_m}\right) + \varphi t, \qquad \int_0^t R(t - s)\, \mathrm{d}J(s) = 1 .
 /// ```
 ///
-/// Each is made from the other: the Laplace transforms obey $`s \hat R \cdot s \hat J = 1`$, whose poles and roots alternate. All
-/// coefficients are positive, as thermodynamics demands, and `R(0) = 1/j₀` is finite. A body with `r∞ = 0` flows: its
-/// *fluidity* φ is positive.
+/// Each is made from the other: the Laplace transforms obey $`s \hat R \cdot s \hat J = 1`$, whose poles and roots
+/// alternate. All coefficients are positive, as thermodynamics demands, and `R(0) = 1/j₀` is finite. A body with `r∞ =
+/// 0` flows: its *fluidity* φ is positive.
 ///
-/// For a contact the modulus is the plane-strain modulus `E/(1 − ν²)`. A Poisson's ratio that does not depend on time is a factor
-/// ([`plane_strain`](Self::plane_strain)), and two bodies creep one on top of the other: [`in_series`](Self::in_series).
-/// [`relative_to`](Self::relative_to) divides by the E\* of a path, which has been computed with one modulus; the series of
-/// [`shares`](Self::shares) is of that kind already.
+/// For a contact the modulus is the plane-strain modulus `E/(1 − ν²)`. A Poisson's ratio that does not depend on time
+/// is a factor ([`plane_strain`](Self::plane_strain)), and two bodies creep one on top of the other:
+/// [`in_series`](Self::in_series). [`relative_to`](Self::relative_to) divides by the E\* of a path, which has been
+/// computed with one modulus; the series of [`shares`](Self::shares) is of that kind already.
 ///
 /// ```
 /// use asperity::creep::Prony;
@@ -66,8 +66,9 @@ impl Prony {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a negative modulus in the end; [`Error::NotPositive`] for times and moduli of terms that are
-    /// not, and if nothing carries at all; [`Error::OutOfRange`] for numbers too far apart for double precision.
+    /// [`Error::OutOfRange`] for a negative modulus in the end; [`Error::NotPositive`] for times and moduli of terms
+    /// that are not, and if nothing carries at all; [`Error::OutOfRange`] for numbers too far apart for double
+    /// precision.
     pub fn relaxation(equilibrium: f64, terms: &[(f64, f64)]) -> Result<Self, Error> {
         let quantity = "equilibrium modulus of a Prony series";
         let is_so = equilibrium >= 0.0 && equilibrium.is_finite();
@@ -94,12 +95,13 @@ impl Prony {
         .sound()
     }
 
-    /// From creep: the compliance j₀ \[1/Pa\] at once, the terms (τ \[s\], j \[1/Pa\]), and the fluidity φ \[1/(Pa s)\].
+    /// From creep: the compliance j₀ \[1/Pa\] at once, the terms (τ \[s\], j \[1/Pa\]), and the fluidity φ \[1/(Pa
+    /// s)\].
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for a compliance at once that is not (without it no pressure has a Prony series), and for terms;
-    /// [`Error::OutOfRange`] for a negative fluidity, and for numbers too far apart for double precision.
+    /// [`Error::NotPositive`] for a compliance at once that is not (without it no pressure has a Prony series), and for
+    /// terms; [`Error::OutOfRange`] for a negative fluidity, and for numbers too far apart for double precision.
     pub fn creep(instantaneous: f64, terms: &[(f64, f64)], fluidity: f64) -> Result<Self, Error> {
         let instantaneous = Error::require_positive("instantaneous compliance", instantaneous)?;
         let is_so = fluidity >= 0.0 && fluidity.is_finite();
@@ -127,8 +129,8 @@ impl Prony {
         .sound()
     }
 
-    /// As parts of the instantaneous modulus E₀, which is that of a path: `R(t)/E₀ = 1 − Σ gᵢ (1 − e^(−t/τᵢ))`, the terms being
-    /// (τ \[s\], g). If the gᵢ add up to 1, the body flows.
+    /// As parts of the instantaneous modulus E₀, which is that of a path: `R(t)/E₀ = 1 − Σ gᵢ (1 − e^(−t/τᵢ))`, the
+    /// terms being (τ \[s\], g). If the gᵢ add up to 1, the body flows.
     ///
     /// # Errors
     ///
@@ -147,7 +149,8 @@ impl Prony {
         Self::relaxation(if left <= rounding { 0.0 } else { left }, terms)
     }
 
-    /// The plane-strain modulus `E(t)/(1 − ν²)` of this body, being E(t), with a Poisson's ratio that does not depend on time.
+    /// The plane-strain modulus `E(t)/(1 − ν²)` of this body, being E(t), with a Poisson's ratio that does not depend
+    /// on time.
     ///
     /// # Errors
     ///

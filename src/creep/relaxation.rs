@@ -14,8 +14,9 @@ use crate::{BedError, CreepError, Error, LoadingPath};
 
 /// The contact of viscoelastic bodies at a history of approach: stress relaxation.
 ///
-/// While the approach does not fall, contact and gaps are those of the elastic path at it, whatever the bodies do; the load is
-/// $`W(t) = \frac{1}{E^\ast} \int R(t - s)\, \mathrm{d}W_{el}(\delta(s))`$, and the pressure is made of the same increments.
+/// While the approach does not fall, contact and gaps are those of the elastic path at it, whatever the bodies do; the
+/// load is $`W(t) = \frac{1}{E^\ast} \int R(t - s)\, \mathrm{d}W_{el}(\delta(s))`$, and the pressure is made of the
+/// same increments.
 ///
 /// ```
 /// use asperity::bed::Bed;
@@ -51,13 +52,13 @@ pub struct Relaxation<'a> {
 }
 
 impl<'a> Relaxation<'a> {
-    /// With the bed of a path, the modulus [relative to](Prony::relative_to) the E\* of that path, and the approach \[m\]; where it is
-    /// negative the surfaces are apart.
+    /// With the bed of a path, the modulus [relative to](Prony::relative_to) the E\* of that path, and the approach
+    /// \[m\]; where it is negative the surfaces are apart.
     ///
     /// # Errors
     ///
-    /// [`BedError`] if the elastic path has no state at an approach, other than that it ends before; [`Error::NotHomogeneous`] for a path
-    /// on layers of several materials.
+    /// [`BedError`] if the elastic path has no state at an approach, other than that it ends before;
+    /// [`Error::NotHomogeneous`] for a path on layers of several materials.
     pub fn new(bed: &'a Bed<'a>, prony: &Prony, approach: &PiecewiseLinear) -> Result<Self, Error> {
         bed.history().layering().check(Theory::Creep)?;
         let Elastic { knots, recedes, ends } = Elastic::along(bed, approach)?;
@@ -89,8 +90,8 @@ impl<'a> Relaxation<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a time that is no number; [`CreepError::ContactRecedes`] if the approach has fallen before;
-    /// [`BedError::PathEndsBefore`] if it is beyond the path.
+    /// [`Error::OutOfRange`] for a time that is no number; [`CreepError::ContactRecedes`] if the approach has fallen
+    /// before; [`BedError::PathEndsBefore`] if it is beyond the path.
     pub fn at(&self, time: f64) -> Result<CreepState, Error> {
         Error::require("time", time, !time.is_nan(), "a number")?;
         let effective_load = self.growth.at(time);
@@ -145,8 +146,8 @@ impl<'a> Relaxation<'a> {
         in_pieces(&self.growth.increments(&self.kernel, time, until), pieces)
     }
 
-    /// The gap at a time \[m\]: that of the elastic path at the approach, which `path` gives; where the surfaces are apart, by as much
-    /// more than at first touch.
+    /// The gap at a time \[m\]: that of the elastic path at the approach, which `path` gives; where the surfaces are
+    /// apart, by as much more than at first touch.
     ///
     /// # Errors
     ///

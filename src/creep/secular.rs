@@ -17,8 +17,8 @@ pub(super) struct Root {
 /// The roots of `Σ wᵢ/(x − λᵢ) = c` with c ≥ 0, of poles in ascending order, no two in one place: one between each pole
 /// and the next, and for c > 0 one behind the last.
 ///
-/// The function falls from +∞ to −∞ between two poles, so that bisection finds each root. Roots are kept as their distance from
-/// the nearer pole, which makes all differences exact to rounding, however close roots and poles are.
+/// The function falls from +∞ to −∞ between two poles, so that bisection finds each root. Roots are kept as their
+/// distance from the nearer pole, which makes all differences exact to rounding, however close roots and poles are.
 pub(super) fn roots(poles: &[Pole], c: f64) -> Vec<Root> {
     let mut roots = Vec::with_capacity(poles.len());
     for (k, pair) in poles.windows(2).enumerate() {
@@ -54,8 +54,8 @@ fn root(poles: &[Pole], origin: f64, offset: f64) -> Root {
     Root { place: origin + offset, slope: squares.sum() }
 }
 
-/// The least number up to `most` that is so; all above it are. Bisection of the bits of a positive number: to the last of them,
-/// in 64 steps, however small it is.
+/// The least number up to `most` that is so; all above it are. Bisection of the bits of a positive number: to the last
+/// of them, in 64 steps, however small it is.
 fn least(most: f64, is_so: impl Fn(f64) -> bool) -> f64 {
     let (mut below, mut at) = (0_u64, most.to_bits());
     while at - below > 1 {
@@ -90,8 +90,8 @@ mod tests {
         }
     }
 
-    /// The second of two poles 12 decades apart, with a weight of 10⁻¹⁸: the root is a part in 10¹⁸ before it, which no difference
-    /// of places shows.
+    /// The second of two poles 12 decades apart, with a weight of 10⁻¹⁸: the root is a part in 10¹⁸ before it, which no
+    /// difference of places shows.
     #[test]
     fn a_root_beside_a_pole_is_known_by_its_distance() {
         let poles = [Pole { place: 1.0, weight: 1.0 }, Pole { place: 1e12, weight: 1e-18 }];

@@ -10,8 +10,8 @@ use crate::bed::{Bed, BedState, Superposition};
 pub struct CreepState {
     /// Time t \[s\], just after a jump there.
     pub time: f64,
-    /// Effective load $`W_e = E^\ast \int J(t - s)\, \mathrm{d}W(s)`$ \[N\]. While it has not fallen, contact and gaps are those of
-    /// the elastic path at this load.
+    /// Effective load $`W_e = E^\ast \int J(t - s)\, \mathrm{d}W(s)`$ \[N\]. While it has not fallen, contact and gaps
+    /// are those of the elastic path at this load.
     pub effective_load: f64,
     /// Load W \[N\].
     pub load: f64,
@@ -55,9 +55,9 @@ impl CreepState {
 
 /// Increments (load of the path at the end, weight) as some pieces of one weight each, the mean over the loads in it.
 ///
-/// What a piece leaves out goes with the product of its load and of the change of the weight in it. Their sum is least if
-/// it is the same in all pieces: ends are equally far apart in the measure ∫ √(dφ dW). A load that was put on at once is one
-/// piece. If there are no more increments than pieces, they stay as they are.
+/// What a piece leaves out goes with the product of its load and of the change of the weight in it. Their sum is least
+/// if it is the same in all pieces: ends are equally far apart in the measure ∫ √(dφ dW). A load that was put on at
+/// once is one piece. If there are no more increments than pieces, they stay as they are.
 pub(super) fn in_pieces(increments: &[(f64, f64)], pieces: usize) -> Result<Superposition, Error> {
     let expected = "at least 1";
     Error::require("number of pieces", pieces as f64, pieces > 0, expected)?;

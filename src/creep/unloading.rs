@@ -15,9 +15,9 @@ use crate::{CreepError, Error};
 /// \frac{1}{E^\ast} \int_0^{t_1} R(t - s)\, \mathrm{d}W_e(s) = W(t), \qquad
 /// p(t) = \frac{1}{E^\ast} \int_0^{t_1} R(t - s)\, \mathrm{d}p_e(s)
 /// ```
-/// (Ting, J. Appl. Mech. 33 (1966) 845, for bodies of revolution; here of any surface). t₁ is one bracketed root in closed forms: no
-/// step of time. Approach and mean gap take the recovery of what is no longer in contact, and with it the
-/// [bed](super::ViscoelasticBed).
+/// (Ting, J. Appl. Mech. 33 (1966) 845, for bodies of revolution; here of any surface). t₁ is one bracketed root in
+/// closed forms: no step of time. Approach and mean gap take the recovery of what is no longer in contact, and with it
+/// the [bed](super::ViscoelasticBed).
 ///
 /// ```
 /// use asperity::bed::Bed;
@@ -148,8 +148,8 @@ impl<'a, 'b> Unloading<'a, 'b> {
 
     /// The first corner behind the recession from which on the contact grows again.
     ///
-    /// Between corners the load that a contact carries is convex in time and W is linear, so that the contact, once it recedes,
-    /// goes on to do so up to the next corner. Behind a corner it does if the load falls at least as fast as
+    /// Between corners the load that a contact carries is convex in time and W is linear, so that the contact, once it
+    /// recedes, goes on to do so up to the next corner. Behind a corner it does if the load falls at least as fast as
     /// relaxation takes it from the contact.
     fn find_return(&self, recession: Recession) -> Option<f64> {
         let growth = self.creep.growth();

@@ -21,13 +21,13 @@ pub enum Control {
 /// The contact of viscoelastic bodies under any history, receding and returning contact included, in steps of time.
 ///
 /// Each increment of the path, from one knot to the next, is an element with a stress φ and a compression ψ of its own,
-/// `ψ = E* ∫ J dφ`. The contact is a prefix of the elements: they are compressed in full, ψ = 1 and φ ≥ 0; those behind the front are
-/// free, φ = 0, and recover, ψ ≤ 1. The load ∫ φ dW or the approach ∫ ψ dδ says where the front is. So nodes leave the
-/// contact in the reverse of the order in which they came, and come back in it, whatever the history.
+/// `ψ = E* ∫ J dφ`. The contact is a prefix of the elements: they are compressed in full, ψ = 1 and φ ≥ 0; those behind
+/// the front are free, φ = 0, and recover, ψ ≤ 1. The load ∫ φ dW or the approach ∫ ψ dδ says where the front is. So
+/// nodes leave the contact in the reverse of the order in which they came, and come back in it, whatever the history.
 ///
-/// Stresses are linear in each step. With that, each step fulfils all conditions of contact to rounding; with shorter steps the error falls
-/// by the square of their length. A step that is far too long, some thousand of the shortest relaxation times, may bring out
-/// negative pressures; it is then halved.
+/// Stresses are linear in each step. With that, each step fulfils all conditions of contact to rounding; with shorter
+/// steps the error falls by the square of their length. A step that is far too long, some thousand of the shortest
+/// relaxation times, may bring out negative pressures; it is then halved.
 ///
 /// A step takes O(N M) for the N elements that have ever carried load, and M terms of creep.
 ///
@@ -106,7 +106,8 @@ struct Front {
 }
 
 impl<'a> ViscoelasticBed<'a> {
-    /// With the bed of a path, and the modulus [relative to](Prony::relative_to) the E\* of that path: at first touch, at t = 0.
+    /// With the bed of a path, and the modulus [relative to](Prony::relative_to) the E\* of that path: at first touch,
+    /// at t = 0.
     ///
     /// # Errors
     ///
@@ -165,8 +166,8 @@ impl<'a> ViscoelasticBed<'a> {
         &self.strains
     }
 
-    /// Takes each internal variable as many times as far from what it was `before` as its term says, under the present load; not where
-    /// pressures would become negative.
+    /// Takes each internal variable as many times as far from what it was `before` as its term says, under the present
+    /// load; not where pressures would become negative.
     pub(super) fn go_ahead(&mut self, before: &[f64], times: &[f64]) {
         let present = self.memory();
         let earlier = before.iter().copied().chain(std::iter::repeat(0.0));
@@ -184,8 +185,9 @@ impl<'a> ViscoelasticBed<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a duration that is negative or not finite, a negative load, and an approach that is not finite;
-    /// [`CreepError::BedEnds`] if the path does not reach as far; [`CreepError::StepFails`]. The present state then stays.
+    /// [`Error::OutOfRange`] for a duration that is negative or not finite, a negative load, and an approach that is
+    /// not finite; [`CreepError::BedEnds`] if the path does not reach as far; [`CreepError::StepFails`]. The present
+    /// state then stays.
     pub fn step(&mut self, duration: f64, control: Control) -> Result<CreepState, Error> {
         let is_so = duration >= 0.0 && duration.is_finite();
         Error::require("duration of a step", duration, is_so, "at least 0 and finite")?;
@@ -206,7 +208,8 @@ impl<'a> ViscoelasticBed<'a> {
         Ok(self.state)
     }
 
-    /// The present pressure, as increments of the path with their stresses: see [`Creep::pressure`](super::Creep::pressure).
+    /// The present pressure, as increments of the path with their stresses: see
+    /// [`Creep::pressure`](super::Creep::pressure).
     ///
     /// # Errors
     ///
@@ -225,8 +228,9 @@ impl<'a> ViscoelasticBed<'a> {
         in_pieces(&self.weights(|k, length| self.present_compression(k) / length), pieces)
     }
 
-    /// The present gap \[m\], `g = g₀ + ∫ ψ du − δ` with the initial gap g₀ and the present [compression](Self::compression) ψ, in
-    /// pieces. Nodes in contact have none, and where the pieces would overlap there is none either.
+    /// The present gap \[m\], `g = g₀ + ∫ ψ du − δ` with the initial gap g₀ and the present
+    /// [compression](Self::compression) ψ, in pieces. Nodes in contact have none, and where the pieces would overlap
+    /// there is none either.
     ///
     /// `path` is that of the bed: it gives a field for each piece.
     ///

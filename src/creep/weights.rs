@@ -9,7 +9,8 @@ pub(super) struct Weights {
     pub(super) old: f64,
     /// `1 − (1 − e⁻ᶻ)/z`.
     pub(super) now: f64,
-    /// `(1 − e⁻ᶻ)/z`: the mean of `e⁻ˣ` up to z. Of a long time it is small, and 1 less the weight above loses its digits.
+    /// `(1 − e⁻ᶻ)/z`: the mean of `e⁻ˣ` up to z. Of a long time it is small, and 1 less the weight above loses its
+    /// digits.
     pub(super) mean: f64,
 }
 

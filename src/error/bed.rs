@@ -21,7 +21,8 @@ pub enum BedError {
         approach: f64,
     },
 
-    /// A node leaves the contact, or yields: increments before and after that are not those of elastic contact that grows.
+    /// A node leaves the contact, or yields: increments before and after that are not those of elastic contact that
+    /// grows.
     #[error(
         "event {event}: node ({ix}, {iy}) {happens}; only the increments of elastic contact that grows can be superposed. {instead}"
     )]

@@ -6,7 +6,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CreepError {
-    /// The contact recedes, and no state of the elastic path is that of a later time. `ViscoelasticBed` steps through such a history.
+    /// The contact recedes, and no state of the elastic path is that of a later time. `ViscoelasticBed` steps through
+    /// such a history.
     #[error(
         "contact recedes from t = {time} s on: the effective load falls from {effective_load} N, and the elastic path has no state \
          for what follows; step the bed through it"

@@ -6,7 +6,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum JointError {
-    /// The stiffness on further loading is that of the elastic nodes alone, and those that have yielded conduct as well.
+    /// The stiffness on further loading is that of the elastic nodes alone, and those that have yielded conduct as
+    /// well.
     #[error(
         "{yielded_nodes} of {contact_nodes} nodes in contact have yielded, and the stiffness on unloading, of all nodes in contact, is not \
          known: `add_unloading_stiffness` of the path or of the solver of single loads adds it"

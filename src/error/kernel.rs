@@ -76,8 +76,8 @@ pub enum KernelError {
         opposite: f64,
     },
 
-    /// A hardness was given for a kernel of [`ContactGrowth::Unknown`](crate::ContactGrowth): where pressures may fall as the approach
-    /// grows, yielded nodes may unload, and a hardness does not determine the contact.
+    /// A hardness was given for a kernel of [`ContactGrowth::Unknown`](crate::ContactGrowth): where pressures may fall
+    /// as the approach grows, yielded nodes may unload, and a hardness does not determine the contact.
     #[error(
         "a hardness needs a body on which contact is known to grow: on this one, as under a stiff layer, yielded nodes may unload while the \
          load grows, and a hardness does not determine the contact. Without one it has its path"

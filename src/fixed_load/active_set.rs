@@ -152,9 +152,10 @@ impl<'a> ActiveSet<'a> {
         self.descend(criteria, |descent, progress| descent.run(INNER, progress))
     }
 
-    /// A round of the primal active-set method: nodes that overlap join the solution on a set, and pressures go towards the new
-    /// solution as far as the energy falls. It is less with every solution, so that no set comes again with one; and between two of
-    /// them nodes only leave (Nocedal and Wright, Numerical Optimization, 2006, 16.5, where they do one at a time).
+    /// A round of the primal active-set method: nodes that overlap join the solution on a set, and pressures go towards
+    /// the new solution as far as the energy falls. It is less with every solution, so that no set comes again with
+    /// one; and between two of them nodes only leave (Nocedal and Wright, Numerical Optimization, 2006, 16.5, where
+    /// they do one at a time).
     fn cautious_round(&mut self, criteria: Criteria, deepest: f64) -> Result<Errors, Error> {
         let joins = self.is_solved;
         self.level.choose_contact(|node, pressure, total_gap| {
@@ -181,8 +182,8 @@ impl<'a> ActiveSet<'a> {
         way(descent, &mut self.progress)
     }
 
-    /// Removes the node of the widest gap from a contact that is everywhere, if an approach is prescribed and the mean displacement is
-    /// arbitrary.
+    /// Removes the node of the widest gap from a contact that is everywhere, if an approach is prescribed and the mean
+    /// displacement is arbitrary.
     ///
     /// Uniform pressure does not displace such a contact relative to its mean plane, so that no
     /// pressure there answers to an approach; short of full contact, some node is always out.

@@ -27,11 +27,12 @@ pub struct FixedLoadBuilder<'a> {
 }
 
 impl<'a> FixedLoadBuilder<'a> {
-    /// Greatest pressure H \[Pa\]: nodes that reach it yield, and [`FixedLoadSolution::fields`](super::FixedLoadSolution::fields)
-    /// has what stays of them. Infinity, as by default, is elastic contact.
+    /// Greatest pressure H \[Pa\]: nodes that reach it yield, and
+    /// [`FixedLoadSolution::fields`](super::FixedLoadSolution::fields) has what stays of them. Infinity, as by default,
+    /// is elastic contact.
     ///
-    /// A solution takes some ten elastic ones, and states are not continued from each other. A load of H times the nominal area or
-    /// more is an [`Error::OutOfRange`]: all nodes yield below it.
+    /// A solution takes some ten elastic ones, and states are not continued from each other. A load of H times the
+    /// nominal area or more is an [`Error::OutOfRange`]: all nodes yield below it.
     pub fn hardness(mut self, hardness: f64) -> Self {
         self.hardness = Limit::Uniform(hardness);
         self
@@ -85,11 +86,11 @@ impl<'a> FixedLoadBuilder<'a> {
     ///
     /// [`Error::OutOfRange`] for a tolerance that is not between 0 and 1, both excluded, and for a periodic kernel with
     /// cells more than [`MAX_ASPECT`](PeriodicBoussinesq::MAX_ASPECT) times as long as wide: from ten times that on,
-    /// iterations on [`Spectral`](crate::Spectral) were found to end without an answer. A path with a
-    /// factor, a single row of nodes and a free boundary know no such limit.
-    /// [`Error::NotPositive`] for a hardness, [`Error::GridMismatch`] for a map of another grid, and
-    /// [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a hardness with a kernel that may let nodes leave.
-    /// [`Error::MemoryBudget`] if the grid is too large for the budget; and those of [`Problem::new`].
+    /// iterations on [`Spectral`](crate::Spectral) were found to end without an answer. A path with a factor, a single
+    /// row of nodes and a free boundary know no such limit. [`Error::NotPositive`] for a hardness,
+    /// [`Error::GridMismatch`] for a map of another grid, and
+    /// [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a hardness with a kernel that may let
+    /// nodes leave. [`Error::MemoryBudget`] if the grid is too large for the budget; and those of [`Problem::new`].
     pub fn build(self) -> Result<FixedLoadSolver, Error> {
         let settings = self.settings;
         settings.check()?;

@@ -57,8 +57,8 @@ impl<'a> Descent<'a> {
         self.run_and(inner, progress, Self::release)
     }
 
-    /// The same, but from the start, whose pressures must not be negative, only as far towards the solution as the energy is less
-    /// than it was with all nodes on the way set free that lose their pressure.
+    /// The same, but from the start, whose pressures must not be negative, only as far towards the solution as the
+    /// energy is less than it was with all nodes on the way set free that lose their pressure.
     pub(super) fn run_downhill(self, inner: f64, progress: &mut Progress) -> Result<Errors, Error> {
         self.run_and(inner, progress, Self::go_downhill)
     }
@@ -84,8 +84,8 @@ impl<'a> Descent<'a> {
         Ok(errors)
     }
 
-    /// The whole way, half of it, and so on until the energy is less, but not less far than to where the first pressures vanish: up to
-    /// there it falls.
+    /// The whole way, half of it, and so on until the energy is less, but not less far than to where the first
+    /// pressures vanish: up to there it falls.
     fn go_downhill(&mut self, start: &Start) -> Result<(), Error> {
         let end = self.pressure.clone();
         let edge = edge(&start.pressure, &end);
@@ -108,8 +108,8 @@ impl<'a> Descent<'a> {
         self.stop_at_the_edge(start, edge)
     }
 
-    /// What the energy has changed by since the start, less the approach times the change of the sum: of both displacements, so that
-    /// nothing cancels.
+    /// What the energy has changed by since the start, less the approach times the change of the sum: of both
+    /// displacements, so that nothing cancels.
     fn energy_since(&self, start: &Start) -> f64 {
         let (x, total_gap) = (&self.pressure, &self.total_gap);
         sum_over(x.len(), |i| {
@@ -174,7 +174,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Sets nodes with tension free, and goes there, or as far as the energy falls if there was no tension at the start.
+    /// Sets nodes with tension free, and goes there, or as far as the energy falls if there was no tension at the
+    /// start.
     fn release(&mut self, start: &Start) -> Result<(), Error> {
         release(
             self.level.preconditioner.sparse(),
@@ -196,8 +197,8 @@ impl<'a> Descent<'a> {
         Ok(())
     }
 
-    /// Goes back to where the energy is least on the way from a start without tension; with tension it could be less than
-    /// that of the solution.
+    /// Goes back to where the energy is least on the way from a start without tension; with tension it could be less
+    /// than that of the solution.
     fn go_to_the_minimum(&mut self, start: &Start) -> Result<(), Error> {
         // Along the segment the energy is a parabola, known from its slopes.
         let (x, total_gap) = (&self.pressure, &self.total_gap);
@@ -253,7 +254,8 @@ impl<'a> Descent<'a> {
     }
 }
 
-/// The part of the way between pressures that are not negative and others at which the first ones vanish; 1 if none does.
+/// The part of the way between pressures that are not negative and others at which the first ones vanish; 1 if none
+/// does.
 fn edge(from: &[f64], to: &[f64]) -> f64 {
     let falling = from.iter().zip(to).filter(|(_, to)| **to < 0.0);
     falling.map(|(from, to)| from / (from - to)).fold(1.0, f64::min)

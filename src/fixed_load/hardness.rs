@@ -9,10 +9,10 @@ use crate::krylov::sum;
 
 /// Nodes that have yielded, on the way to a solution.
 ///
-/// Rounds of elastic solutions, each with the nodes above H yielded, end at the solution. Where no pressure draws others
-/// with it (`C_EE⁻¹ C_EY ≥ 0`), no node that carries more than H in an elastic solution can be elastic in the end: pressure
-/// that is taken off it goes to others, and never back. On other bodies a node can have yielded too early. It then has a gap under H,
-/// and is elastic again in the next round.
+/// Rounds of elastic solutions, each with the nodes above H yielded, end at the solution. Where no pressure draws
+/// others with it (`C_EE⁻¹ C_EY ≥ 0`), no node that carries more than H in an elastic solution can be elastic in the
+/// end: pressure that is taken off it goes to others, and never back. On other bodies a node can have yielded too
+/// early. It then has a gap under H, and is elastic again in the next round.
 #[derive(Debug)]
 pub(super) struct Yielded<'a> {
     hardness: &'a Hardness,
@@ -53,8 +53,8 @@ impl<'a> Yielded<'a> {
         Self { hardness, map, sum: 0.0, open, own_gap, gap, recoveries: 0 }
     }
 
-    /// Those of an earlier state of the level, which a greater load or approach has as well. The level's problem becomes that of the
-    /// others, whose pressures stay within their hardness.
+    /// Those of an earlier state of the level, which a greater load or approach has as well. The level's problem
+    /// becomes that of the others, whose pressures stay within their hardness.
     pub(super) fn resume(
         hardness: &'a Hardness,
         level: &mut Level,
@@ -70,8 +70,8 @@ impl<'a> Yielded<'a> {
         Ok(yielded)
     }
 
-    /// Lets all nodes of the level's iterate yield that carry anything, if with their hardness they carry the sum `sum`: no pressure
-    /// exceeds it. Returns whether it does.
+    /// Lets all nodes of the level's iterate yield that carry anything, if with their hardness they carry the sum
+    /// `sum`: no pressure exceeds it. Returns whether it does.
     pub(super) fn exhaust(&mut self, level: &mut Level, sum: f64) -> Result<bool, Error> {
         let pressures = level.iterate.pressure.iter().zip(self.hardness.values());
         let carrying = pressures.filter(|(pressure, _)| **pressure > 0.0).map(|(_, h)| h);
@@ -94,8 +94,8 @@ impl<'a> Yielded<'a> {
         (rest > NO_REST * sum).then_some(rest)
     }
 
-    /// Makes the iterate of the level, on which no node carries anything, that of the beginning of a plateau: where the last node yields.
-    /// Returns by how much others overlap there.
+    /// Makes the iterate of the level, on which no node carries anything, that of the beginning of a plateau: where the
+    /// last node yields. Returns by how much others overlap there.
     pub(super) fn begin_plateau(&self, level: &mut Level) -> f64 {
         let [last, next] = ends(&self.gap, &self.map);
         let iterate = &mut level.iterate;
@@ -105,8 +105,8 @@ impl<'a> Yielded<'a> {
         last - next
     }
 
-    /// Lets the nodes of the level's iterate yield whose pressure exceeds their hardness, and those be elastic again that have a gap
-    /// above `tolerance` \[m\].
+    /// Lets the nodes of the level's iterate yield whose pressure exceeds their hardness, and those be elastic again
+    /// that have a gap above `tolerance` \[m\].
     pub(super) fn revise(&mut self, level: &mut Level, tolerance: f64) -> Result<Round, Error> {
         let mut load = vec![0.0; self.map.len()];
         let iterate = &mut level.iterate;
@@ -140,8 +140,8 @@ impl<'a> Yielded<'a> {
         Ok(Round::Changed)
     }
 
-    /// Makes the level's problem the one of the surface again, and its iterate that with all pressures. Returns the nodes that have
-    /// yielded.
+    /// Makes the level's problem the one of the surface again, and its iterate that with all pressures. Returns the
+    /// nodes that have yielded.
     pub(super) fn finish(self, level: &mut Level) -> Result<Vec<bool>, Error> {
         level.gap = self.own_gap;
         let pressures = level.iterate.pressure.iter_mut().zip(self.hardness.values());

@@ -29,11 +29,12 @@
 //!
 //! # Metals that yield
 //!
-//! With [`FixedLoadBuilder::hardness`] no pressure exceeds the hardness H (Almqvist et al., Tribology International 40 (2007) 574:
-//! elastic–perfectly plastic contact): the bounds are `0 ≤ p ≤ H`, and where `p = H` the surfaces overlap elastically by the
-//! plastic depth, which stays in the surface. Nodes that yield are a load on the others, whose problem is the elastic one with the
-//! initial gap `g + C H`; rounds of elastic solutions, each with the nodes above H yielded, end at the solution. The model has
-//! no hardening, does not conserve volume, and knows of no stress below the surface: the pressure of a cell is at most H, nothing else.
+//! With [`FixedLoadBuilder::hardness`] no pressure exceeds the hardness H (Almqvist et al., Tribology International 40
+//! (2007) 574: elastic–perfectly plastic contact): the bounds are `0 ≤ p ≤ H`, and where `p = H` the surfaces overlap
+//! elastically by the plastic depth, which stays in the surface. Nodes that yield are a load on the others, whose
+//! problem is the elastic one with the initial gap `g + C H`; rounds of elastic solutions, each with the nodes above H
+//! yielded, end at the solution. The model has no hardening, does not conserve volume, and knows of no stress below the
+//! surface: the pressure of a cell is at most H, nothing else.
 //!
 //! # Periodic half-spaces
 //!

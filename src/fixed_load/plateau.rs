@@ -5,8 +5,8 @@ use crate::Error;
 use crate::hardness::Hardness;
 use crate::krylov::sum;
 
-/// A set of nodes that carry their hardness while no other node is in contact: the approach grows under one load, from that at which the last
-/// of them has yielded to that at which another touches.
+/// A set of nodes that carry their hardness while no other node is in contact: the approach grows under one load, from
+/// that at which the last of them has yielded to that at which another touches.
 ///
 /// The pressures are known, and so are the gaps under them; both ends follow without a solution.
 #[derive(Debug)]
@@ -24,7 +24,8 @@ pub(super) struct Plateau {
 }
 
 impl Plateau {
-    /// That of a set of nodes on a level, `None` if there is none: where another node overlaps before the last of them yields.
+    /// That of a set of nodes on a level, `None` if there is none: where another node overlaps before the last of them
+    /// yields.
     pub(super) fn of(
         hardness: &Hardness,
         level: &mut Level,
@@ -56,7 +57,8 @@ impl Plateau {
     }
 }
 
-/// Where the last of the nodes that carry their hardness yields, and where the first of the others touches, with the gaps under these pressures.
+/// Where the last of the nodes that carry their hardness yields, and where the first of the others touches, with the
+/// gaps under these pressures.
 pub(super) fn ends(gap: &[f64], yielded: &[bool]) -> [f64; 2] {
     let nodes = gap.iter().zip(yielded);
     nodes.fold([f64::NEG_INFINITY, f64::INFINITY], |[last, next], (&gap, &has_yielded)| {

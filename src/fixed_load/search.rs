@@ -131,8 +131,8 @@ impl Sought {
     }
 }
 
-/// The next step where nothing has happened on the way between two places, as close to full contact: twice as far as that
-/// way, and no less than `change`, whose absolute value is at most the longest step.
+/// The next step where nothing has happened on the way between two places, as close to full contact: twice as far as
+/// that way, and no less than `change`, whose absolute value is at most the longest step.
 fn further(change: f64, [from, to]: [f64; 2]) -> f64 {
     (2.0 * (to - from).abs()).clamp(change.abs(), LONGEST).copysign(change)
 }
@@ -140,8 +140,8 @@ fn further(change: f64, [from, to]: [f64; 2]) -> f64 {
 /// The state that is sought: the root of [`Sought::beyond`] by the exact tangent or by secants, inside
 /// a bracket once there is one.
 ///
-/// Fewer nodes than touch first cannot be had: as long as no other node is in contact, pressures are proportional to the
-/// load, and the contact is the same under any smaller one.
+/// Fewer nodes than touch first cannot be had: as long as no other node is in contact, pressures are proportional to
+/// the load, and the contact is the same under any smaller one.
 fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution, Error> {
     let step = |beyond: f64, slope: f64| (-beyond / slope).clamp(-LONGEST, LONGEST);
     let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);

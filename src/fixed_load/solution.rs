@@ -83,7 +83,8 @@ impl FixedLoadSolution {
     /// The solution that `level` holds, without stiffnesses; its load is `load` if that was
     /// prescribed, else that of the pressure.
     ///
-    /// With a hardness, that of each node and which have yielded. These overlap by their plastic depth, which is no gap.
+    /// With a hardness, that of each node and which have yielded. These overlap by their plastic depth, which is no
+    /// gap.
     pub(super) fn of(
         level: &Level,
         load: Option<f64>,
@@ -165,8 +166,8 @@ impl FixedLoadSolution {
         }
     }
 
-    /// The surface \[m\] with its plastic depth taken off: on unloading, and on loading up to this state again, its contact is
-    /// elastic. Without a hardness it is the surface itself.
+    /// The surface \[m\] with its plastic depth taken off: on unloading, and on loading up to this state again, its
+    /// contact is elastic. Without a hardness it is the surface itself.
     ///
     /// # Errors
     ///

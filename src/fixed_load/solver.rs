@@ -141,7 +141,8 @@ impl FixedLoadSolver {
 
     /// Adds the stiffnesses on unloading to a solution of this solver in which nodes have yielded:
     /// [`contact_unloading_stiffness`](crate::contact::PlasticState::contact_unloading_stiffness) and
-    /// [`interfacial_unloading_stiffness`](crate::contact::PlasticState::interfacial_unloading_stiffness). Others unload as they load.
+    /// [`interfacial_unloading_stiffness`](crate::contact::PlasticState::interfacial_unloading_stiffness). Others
+    /// unload as they load.
     ///
     /// # Errors
     ///

@@ -122,8 +122,8 @@ impl<'a> Stepper<'a> {
         self.to(Prescribed::Approach(approach), sum, None)
     }
 
-    /// Whether an approach has to be found by loads: where the mean displacement is arbitrary, nodes may yield in an elastic solution
-    /// at an approach of mean planes that do not in the end.
+    /// Whether an approach has to be found by loads: where the mean displacement is arbitrary, nodes may yield in an
+    /// elastic solution at an approach of mean planes that do not in the end.
     pub(super) fn finds_approach(&self) -> bool {
         self.hardness.is_some() && self.finest().gauge.is_some()
     }
@@ -221,8 +221,8 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// The nodes that had yielded at the last state, with its pressures moved to the sum `sum` on the finest grid. `None` if there is
-    /// no such state near, or if load or approach fall: then nodes that had yielded may be elastic.
+    /// The nodes that had yielded at the last state, with its pressures moved to the sum `sum` on the finest grid.
+    /// `None` if there is no such state near, or if load or approach fall: then nodes that had yielded may be elastic.
     fn yielded_before(
         &mut self,
         hardness: &'a Hardness,
@@ -243,7 +243,8 @@ impl<'a> Stepper<'a> {
         Yielded::resume(hardness, finest, prescribed, &earlier).map(Some)
     }
 
-    /// Elastic solutions of the nodes that have not yielded, until no more does, behind the first one if that took so many iterations.
+    /// Elastic solutions of the nodes that have not yielded, until no more does, behind the first one if that took so
+    /// many iterations.
     fn rounds(
         &mut self,
         yielded: &mut Yielded<'_>,
@@ -301,7 +302,8 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// The plateaus on which the nodes in contact of a solution, or those of them that have yielded, carry their hardness and no other anything.
+    /// The plateaus on which the nodes in contact of a solution, or those of them that have yielded, carry their
+    /// hardness and no other anything.
     pub(super) fn plateaus_of(
         &mut self,
         solution: &FixedLoadSolution,

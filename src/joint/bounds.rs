@@ -18,27 +18,28 @@ pub struct ConductanceBounds {
 }
 
 impl Conduction {
-    /// Barber's bounds of the conductance at every state of a path, for a surface with more roughness than the grid resolves, of
-    /// at most s \[m\] from its deepest valley to its highest peak.
+    /// Barber's bounds of the conductance at every state of a path, for a surface with more roughness than the grid
+    /// resolves, of at most s \[m\] from its deepest valley to its highest peak.
     ///
-    /// Such a surface lies between this one and this one raised by s, so that its approach δᵣ at each load lies between δ and δ + s; and δᵣ
-    /// is a concave function of the load, since contact grows. Chords then bound its slope,
+    /// Such a surface lies between this one and this one raised by s, so that its approach δᵣ at each load lies between
+    /// δ and δ + s; and δᵣ is a concave function of the load, since contact grows. Chords then bound its slope,
     /// ```math
     /// \max_{W_2 > W} \frac{\delta(W_2) - \delta(W) - s}{W_2 - W} \le \delta_r'(W) \le \min_{W_1 < W} \frac{\delta(W) + s - \delta(W_1)}{W - W_1} ,
     /// ```
-    /// and the slope is ρE\*/2 times the conductance's reciprocal. On a periodic half-space δ is what the mean gap has closed. So it is on one that
-    /// repeats along one side, with 2 s in place of s: as the mean displacement depends on where the load is, the mean gap of the rougher surface is between
-    /// those of the known curve at approaches of s less and s more. Without s
-    /// both bounds are the stiffness before and behind the event. The upper one needs a path well beyond the load. Between two events, those of the earlier one
-    /// are no bounds. The gap is as at the state.
+    /// and the slope is ρE\*/2 times the conductance's reciprocal. On a periodic half-space δ is what the mean gap has
+    /// closed. So it is on one that repeats along one side, with 2 s in place of s: as the mean displacement depends on
+    /// where the load is, the mean gap of the rougher surface is between those of the known curve at approaches of s
+    /// less and s more. Without s both bounds are the stiffness before and behind the event. The upper one needs a path
+    /// well beyond the load. Between two events, those of the earlier one are no bounds. The gap is as at the state.
     ///
     /// Barber, Proc. R. Soc. A 459 (2003) 53.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a roughness that is negative or not finite, and for stiffnesses that are negative or NaN;
-    /// [`JointError::BoundsWithYielding`](crate::JointError) for a path on which nodes yield: its approach is not that of one elastic shape. The contact
-    /// that is left conducts as the elastic one of the residual surface, whose path has bounds. [`Error::NotHomogeneous`] for a path on layers.
+    /// [`Error::OutOfRange`] for a roughness that is negative or not finite, and for stiffnesses that are negative or
+    /// NaN; [`JointError::BoundsWithYielding`](crate::JointError) for a path on which nodes yield: its approach is not
+    /// that of one elastic shape. The contact that is left conducts as the elastic one of the residual surface, whose
+    /// path has bounds. [`Error::NotHomogeneous`] for a path on layers.
     pub fn bounds(
         &self,
         history: &History,
@@ -83,7 +84,8 @@ impl Conduction {
     }
 }
 
-/// Load and compression: the approach where it is that of a distant point, else what the mean gap has closed, up to a constant.
+/// Load and compression: the approach where it is that of a distant point, else what the mean gap has closed, up to a
+/// constant.
 fn compression(state: &LoadingState, body: Layering) -> (f64, f64) {
     let contact = &state.contact;
     let depth = match contact.contact_stiffness {

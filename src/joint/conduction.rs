@@ -25,10 +25,11 @@ impl Carrier {
     }
 }
 
-/// Conduction through a joint: Barber's constriction conductance of the contact, `1/R = 2 K / (ρ E*)`, and optionally the gap in parallel.
+/// Conduction through a joint: Barber's constriction conductance of the contact, `1/R = 2 K / (ρ E*)`, and optionally
+/// the gap in parallel.
 ///
-/// See [`contact_conductance`] for what the formula assumes, and which stiffness K it takes: the contact stiffness on a free
-/// half-space, and the interfacial one on those that repeat along both sides or one.
+/// See [`contact_conductance`] for what the formula assumes, and which stiffness K it takes: the contact stiffness on a
+/// free half-space, and the interfacial one on those that repeat along both sides or one.
 ///
 /// ```
 /// use asperity::joint::Conduction;
@@ -54,7 +55,8 @@ pub struct Conduction {
 }
 
 impl Conduction {
-    /// Of current, between bodies of the composite modulus E\* \[Pa\] and the resistivity ρ = ρ₁ + ρ₂ \[Ω m\], the sum of both.
+    /// Of current, between bodies of the composite modulus E\* \[Pa\] and the resistivity ρ = ρ₁ + ρ₂ \[Ω m\], the sum
+    /// of both.
     ///
     /// # Errors
     ///
@@ -81,17 +83,20 @@ impl Conduction {
         })
     }
 
-    /// The same with the gap in parallel, filled by a medium of the conductivity k \[W/(m K), S/m\] with the jump distance M \[m\] (the sum of the
-    /// temperature jump distances of a gas at both surfaces; 0 for a liquid): over the open area $`A_0 - A`$
+    /// The same with the gap in parallel, filled by a medium of the conductivity k \[W/(m K), S/m\] with the jump
+    /// distance M \[m\] (the sum of the temperature jump distances of a gas at both surfaces; 0 for a liquid): over the
+    /// open area $`A_0 - A`$
     /// ```math
     /// h = k\, \frac{A_0 - A}{\bar g_\mathrm{open} + M} ,
     /// ```
-    /// with the mean gap of the open nodes, $`\bar g_\mathrm{open} = \bar g A_0 / (A_0 - A)`$. It is a model: both ways are taken to share
-    /// nothing but their ends; and since 1/(g + M) is convex in g, the mean over all gaps is no less.
+    /// with the mean gap of the open nodes, $`\bar g_\mathrm{open} = \bar g A_0 / (A_0 - A)`$. It is a model: both ways
+    /// are taken to share nothing but their ends; and since 1/(g + M) is convex in g, the mean over all gaps is no
+    /// less.
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the conductivity, and [`Error::OutOfRange`] for a jump distance that is negative or not finite.
+    /// [`Error::NotPositive`] for the conductivity, and [`Error::OutOfRange`] for a jump distance that is negative or
+    /// not finite.
     pub fn with_gap(mut self, conductivity: f64, jump_distance: f64) -> Result<Self, Error> {
         let conductivity = Error::require_positive("conductivity of the gap", conductivity)?;
         let is_one = (0.0..f64::INFINITY).contains(&jump_distance);
@@ -107,15 +112,15 @@ impl Conduction {
         self.carrier
     }
 
-    /// Conductance \[S, W/K\] at a state; `None` without a stiffness. In full contact of a periodic half-space, which adds nothing to the bodies, it is
-    /// infinite.
+    /// Conductance \[S, W/K\] at a state; `None` without a stiffness. In full contact of a periodic half-space, which
+    /// adds nothing to the bodies, it is infinite.
     ///
     /// It holds on homogeneous half-spaces, and takes another stiffness where these repeat along one side:
     /// [`History::layering`](crate::loading::History::layering) and
     /// [`KernelOrigin::layering`](crate::kernel::KernelOrigin::layering) say which body it is.
     ///
-    /// Nodes that have yielded conduct as well: with a hardness it takes the stiffness on *unloading*, of all nodes in contact, which
-    /// [`LoadingPath::add_unloading_stiffness`](crate::LoadingPath::add_unloading_stiffness) and
+    /// Nodes that have yielded conduct as well: with a hardness it takes the stiffness on *unloading*, of all nodes in
+    /// contact, which [`LoadingPath::add_unloading_stiffness`](crate::LoadingPath::add_unloading_stiffness) and
     /// [`FixedLoadSolver::add_unloading_stiffness`](crate::FixedLoadSolver::add_unloading_stiffness) add to states.
     ///
     /// # Errors
@@ -127,8 +132,9 @@ impl Conduction {
         self.by(of_contact.filter(|_| has_distant_point(body)).or(interfacial), contact, body)
     }
 
-    /// Conductance of the interface \[S, W/K\]: what it adds to bodies with a uniform current, by the interfacial stiffness on either
-    /// half-space. It is what a finite element model of both bodies needs, which has the constriction into the nominal area itself.
+    /// Conductance of the interface \[S, W/K\]: what it adds to bodies with a uniform current, by the interfacial
+    /// stiffness on either half-space. It is what a finite element model of both bodies needs, which has the
+    /// constriction into the nominal area itself.
     ///
     /// # Errors
     ///
@@ -180,8 +186,8 @@ pub(super) fn has_distant_point(body: Layering) -> bool {
     body != Layering::SemiPeriodicHalfSpace
 }
 
-/// Stiffnesses of the nodes in contact: that of a distant point, if there is one, and the interfacial one. Those of a path are of the
-/// elastic nodes, which are all unless some have yielded.
+/// Stiffnesses of the nodes in contact: that of a distant point, if there is one, and the interfacial one. Those of a
+/// path are of the elastic nodes, which are all unless some have yielded.
 pub(super) fn stiffnesses(contact: &ContactState) -> Result<[Option<f64>; 2], Error> {
     match &contact.plastic {
         Some(plastic) if plastic.interfacial_unloading_stiffness.is_some() => {

@@ -12,7 +12,8 @@ const SMALL: f64 = 1e-3;
 /// The quantity whose small values have an absolute error.
 const PRESSURE: &str = "pressure";
 
-/// By which part of itself a number of a table rises at least from row to row: it prints as another one in thirteen digits.
+/// By which part of itself a number of a table rises at least from row to row: it prints as another one in thirteen
+/// digits.
 const RISE: f64 = 1e-11;
 
 /// An interface under one pressure, per nominal area.
@@ -33,8 +34,8 @@ pub struct InterfaceRow {
 }
 
 impl InterfaceRow {
-    /// What is interpolated, with its name and over what: pressure over overclosure; the others over the pressure, and over the overclosure too, which
-    /// is how they follow from a pressure that is interpolated itself.
+    /// What is interpolated, with its name and over what: pressure over overclosure; the others over the pressure, and
+    /// over the overclosure too, which is how they follow from a pressure that is interpolated itself.
     fn values(&self) -> [(&'static str, f64, Option<f64>); 5] {
         let [over_gap, over_pressure] = [self.overclosure, self.pressure];
         let (conductance, tangential) = ("conductance", "tangential stiffness");
@@ -55,20 +56,24 @@ struct Friction {
     compliance_ratio: f64,
 }
 
-/// The laws of an interface: pressure over overclosure, and over the pressure conductance, tangential stiffness and slip limit.
+/// The laws of an interface: pressure over overclosure, and over the pressure conductance, tangential stiffness and
+/// slip limit.
 ///
-/// It is the interface alone, for a finite element model whose bodies are flat there: what the mean gap closes, and the interfacial
-/// stiffness $`K_i`$ on either half-space. Bulk deformation, and the constriction into the nominal area, are the model's own.
+/// It is the interface alone, for a finite element model whose bodies are flat there: what the mean gap closes, and the
+/// interfacial stiffness $`K_i`$ on either half-space. Bulk deformation, and the constriction into the nominal area,
+/// are the model's own.
 ///
-/// Rows are states of the path, in strictly rising order of pressure and overclosure: where one of them stays, as the pressure on a plateau of nodes
-/// that have all yielded, it is raised by 10⁻¹¹ of itself. Of all states so many are left out that linear interpolation between the rows is wrong by no
-/// more than the tolerance at any of them: relative to the value, and for pressures below a thousandth of the greatest one relative to that. In full
-/// contact, where the interface is rigid, the table ends.
+/// Rows are states of the path, in strictly rising order of pressure and overclosure: where one of them stays, as the
+/// pressure on a plateau of nodes that have all yielded, it is raised by 10⁻¹¹ of itself. Of all states so many are
+/// left out that linear interpolation between the rows is wrong by no more than the tolerance at any of them: relative
+/// to the value, and for pressures below a thousandth of the greatest one relative to that. In full contact, where the
+/// interface is rigid, the table ends.
 ///
-/// That holds for conductances and tangential stiffnesses over the pressure, and over the overclosure by way of the pressure that the table gives. Only at
-/// exactly the pressure of a plateau they are those of any place on it.
+/// That holds for conductances and tangential stiffnesses over the pressure, and over the overclosure by way of the
+/// pressure that the table gives. Only at exactly the pressure of a plateau they are those of any place on it.
 ///
-/// Conductance and tangential stiffness are those of all nodes in contact, also of those that have yielded: see [`Conduction::of`].
+/// Conductance and tangential stiffness are those of all nodes in contact, also of those that have yielded: see
+/// [`Conduction::of`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterfaceTable {
     rows: Vec<InterfaceRow>,
@@ -94,8 +99,9 @@ impl<'a> InterfaceTableBuilder<'a> {
         self
     }
 
-    /// Adds tangential stiffness and slip limit, with the coefficient of friction μ and the ratio κ = E\*/G\* of tangential to normal compliance:
-    /// the stiffness is $`K_i / \kappa`$. Of bodies of one material, and of a rigid one against ν, κ = (2 − ν) / (2 (1 − ν)): 1.21 for ν = 0.3.
+    /// Adds tangential stiffness and slip limit, with the coefficient of friction μ and the ratio κ = E\*/G\* of
+    /// tangential to normal compliance: the stiffness is $`K_i / \kappa`$. Of bodies of one material, and of a rigid
+    /// one against ν, κ = (2 − ν) / (2 (1 − ν)): 1.21 for ν = 0.3.
     pub fn friction(mut self, coefficient: f64, compliance_ratio: f64) -> Self {
         self.friction = Some(Friction { coefficient, compliance_ratio });
         self
@@ -111,10 +117,11 @@ impl<'a> InterfaceTableBuilder<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for tolerance, friction and compliance ratio; [`Error::OutOfRange`] for a tolerance of 1 and more, for a path
-    /// with fewer than two rows, and for stiffnesses that are negative or NaN; [`JointError::NoFunction`] where the mean gap opens so much
-    /// under a greater load that the law is no function of the overclosure; [`JointError::NoUnloadingStiffness`] if nodes have yielded, and
-    /// conductances or tangential stiffnesses are asked for without the stiffness of [`Conduction::of`]; [`Error::NotHomogeneous`] for these on
+    /// [`Error::NotPositive`] for tolerance, friction and compliance ratio; [`Error::OutOfRange`] for a tolerance of 1
+    /// and more, for a path with fewer than two rows, and for stiffnesses that are negative or NaN;
+    /// [`JointError::NoFunction`] where the mean gap opens so much under a greater load that the law is no function of
+    /// the overclosure; [`JointError::NoUnloadingStiffness`] if nodes have yielded, and conductances or tangential
+    /// stiffnesses are asked for without the stiffness of [`Conduction::of`]; [`Error::NotHomogeneous`] for these on
     /// layers.
     pub fn build(self) -> Result<InterfaceTable, Error> {
         let tolerance = Error::require_positive("tolerance of the table", self.tolerance)?;
@@ -213,7 +220,8 @@ impl Points {
             *last = InterfaceRow { overclosure: last.overclosure, pressure: last.pressure, ..row };
             return;
         }
-        // On a plateau of nodes that have all yielded the pressure stays what it is. What falls by so little is rounding.
+        // On a plateau of nodes that have all yielded the pressure stays what it is. What falls by so little is
+        // rounding.
         let risen = |raised: f64, before: f64, now: f64| {
             let value = now.max(raised * (1.0 + RISE));
             (now >= before * (1.0 - RISE) && value > raised).then_some(value)
@@ -319,8 +327,8 @@ fn check_between(
     Ok(())
 }
 
-/// The rows that interpolation needs: the two ends, and always the one between two others at which the error is greatest, until none is too
-/// large (Ramer, Douglas and Peucker).
+/// The rows that interpolation needs: the two ends, and always the one between two others at which the error is
+/// greatest, until none is too large (Ramer, Douglas and Peucker).
 fn thinned(all: &[InterfaceRow], tolerance: f64) -> Vec<InterfaceRow> {
     let greatest = all.last().map_or(0.0, |row| row.pressure);
     let mut kept = vec![false; all.len()];

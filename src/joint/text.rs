@@ -61,10 +61,11 @@ const NAME: &str = "ROUGH_INTERFACE";
 impl InterfaceTable {
     /// The table for a program, in SI units.
     ///
-    /// * *Abaqus*: `*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR`; `*GAP CONDUCTANCE, PRESSURE` for heat, `*GAP ELECTRICAL CONDUCTANCE, PRESSURE`
-    ///   for current; `*FRICTION, ELASTIC SLIP`, which is one number: that of the last row.
-    /// * *CalculiX*: the same; a `*FRICTION` whose stick slope is the stiffness of the last row; current goes by the analogy with heat, as a
-    ///   `*GAP CONDUCTANCE`.
+    /// * *Abaqus*: `*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR`; `*GAP CONDUCTANCE, PRESSURE` for heat, `*GAP
+    ///   ELECTRICAL CONDUCTANCE, PRESSURE` for current; `*FRICTION, ELASTIC SLIP`, which is one number: that of the
+    ///   last row.
+    /// * *CalculiX*: the same; a `*FRICTION` whose stick slope is the stiffness of the last row; current goes by the
+    ///   analogy with heat, as a `*GAP CONDUCTANCE`.
     /// * *MOOSE*: a `PiecewiseLinear` function for each quantity.
     /// * *CSV*: all columns.
     #[must_use]

@@ -16,11 +16,12 @@ pub enum Boundary {
     /// The mean displacement of a periodic half-space under a net load is arbitrary, that of a layer
     /// on a rigid base is not: see [`MeanDisplacement`](super::MeanDisplacement).
     Periodic,
-    /// The same along x only: surface, pressure and displacement repeat with the side of the grid along x, `C(di ± nx, dj) = C(di, dj)`,
-    /// and nothing is pressed beyond the edges along y.
+    /// The same along x only: surface, pressure and displacement repeat with the side of the grid along x, `C(di ± nx,
+    /// dj) = C(di, dj)`, and nothing is pressed beyond the edges along y.
     ///
-    /// A row of images that never ends displaces any point without bound, and all points alike but for a logarithm of the distance: what
-    /// the approach is counted from is the kernel's to say, as [`SemiPeriodicBoussinesq`](super::SemiPeriodicBoussinesq) does.
+    /// A row of images that never ends displaces any point without bound, and all points alike but for a logarithm of
+    /// the distance: what the approach is counted from is the kernel's to say, as
+    /// [`SemiPeriodicBoussinesq`](super::SemiPeriodicBoussinesq) does.
     PeriodicX,
     /// The same along y only, `C(di, dj ± ny) = C(di, dj)`.
     PeriodicY,

@@ -13,7 +13,8 @@ pub enum Layering {
     Unknown,
     /// Homogeneous half-spaces.
     HalfSpace,
-    /// Homogeneous half-spaces under a row of images along one side: what their approach is counted from is a convention.
+    /// Homogeneous half-spaces under a row of images along one side: what their approach is counted from is a
+    /// convention.
     SemiPeriodicHalfSpace,
     /// Layers of one material on a rigid base, against a rigid body: every displacement goes with 1/E of that material.
     OneMaterial,

@@ -3,8 +3,8 @@
 use crate::kernel::check_periodic_cells;
 use crate::{Boundary, Error, Grid};
 
-/// `Ok` for cells that are at most so many times as long as wide, of a single row, or of a grid that does not repeat. Long waves
-/// along long cells of a periodic one displace so much more than short ones that nothing is seen of these.
+/// `Ok` for cells that are at most so many times as long as wide, of a single row, or of a grid that does not repeat.
+/// Long waves along long cells of a periodic one displace so much more than short ones that nothing is seen of these.
 ///
 /// # Errors
 ///

@@ -20,8 +20,9 @@ struct Direction {
     norm: f64,
 }
 
-/// A step of conjugate gradients on a contact set: by `length` along `values`, which changes displacements by `reach` times
-/// `image` in contact, and times `everywhere` on the whole grid. The sum of squares of what is added has the root `norm`.
+/// A step of conjugate gradients on a contact set: by `length` along `values`, which changes displacements by `reach`
+/// times `image` in contact, and times `everywhere` on the whole grid. The sum of squares of what is added has the root
+/// `norm`.
 #[derive(Debug)]
 pub(crate) struct Step<'a> {
     pub(crate) length: f64,

@@ -23,7 +23,8 @@ pub(super) struct Lattice {
     candidates: [Vec<[i16; 2]>; 4],
     /// Whether the lattice is periodic along x and along y.
     wraps: [bool; 2],
-    /// If it is, all offsets to other nodes of it, those of the greatest influence first; each node once, however small the lattice.
+    /// If it is, all offsets to other nodes of it, those of the greatest influence first; each node once, however small
+    /// the lattice.
     around: Vec<[i16; 2]>,
     /// Influence coefficients relative to C(0, 0), WIDTH × WIDTH.
     coefficients: Vec<f32>,

@@ -86,8 +86,8 @@ impl Operator {
         Ok(())
     }
 
-    /// Adds to `u` the displacements under any pressures of a contact set, in single precision, and returns the greatest that it
-    /// has added.
+    /// Adds to `u` the displacements under any pressures of a contact set, in single precision, and returns the
+    /// greatest that it has added.
     pub(crate) fn add(
         &mut self,
         contact: &NodeSet,

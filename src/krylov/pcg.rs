@@ -53,14 +53,14 @@ pub(crate) struct LinearSystem<'a> {
 }
 
 impl LinearSystem<'_> {
-    /// Solves an equation from pressures `start`, of which `base` knows the displacements of most. Steps are
-    /// in single precision, and so are displacements as long as that is within the tolerance. Returns the number of iterations too.
+    /// Solves an equation from pressures `start`, of which `base` knows the displacements of most. Steps are in single
+    /// precision, and so are displacements as long as that is within the tolerance. Returns the number of iterations
+    /// too.
     ///
     /// # Errors
     ///
-    /// [`Error::FactorizationFailed`] if the matrix turns out not to be positive definite, and
-    /// [`Error::NoConvergence`] if the residual is not finite, after too many iterations, or where rounding keeps it above the
-    /// tolerance.
+    /// [`Error::FactorizationFailed`] if the matrix turns out not to be positive definite, and [`Error::NoConvergence`]
+    /// if the residual is not finite, after too many iterations, or where rounding keeps it above the tolerance.
     pub(crate) fn solve<F: Fn(usize) -> f64 + Sync + Send>(
         &mut self,
         equation: &Equation<F>,

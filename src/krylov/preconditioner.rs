@@ -44,8 +44,8 @@ impl Preconditioner {
         }
     }
 
-    /// The contact set that the coarse matrix was computed for, which depends on the sets that came before the present one; nothing
-    /// else does.
+    /// The contact set that the coarse matrix was computed for, which depends on the sets that came before the present
+    /// one; nothing else does.
     pub(crate) fn coarse_nodes(&self) -> &[u32] {
         self.coarse.as_ref().map_or(&[], CoarseSpace::inverted)
     }

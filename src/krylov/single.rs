@@ -72,8 +72,8 @@ pub(crate) fn product(a: &[f32], b: &[f32]) -> f32 {
 mod tests {
     use super::*;
 
-    /// Small integers come back from a matrix that is dominated by its diagonal, of sizes up to and beyond blocks of four
-    /// columns and of 16 numbers.
+    /// Small integers come back from a matrix that is dominated by its diagonal, of sizes up to and beyond blocks of
+    /// four columns and of 16 numbers.
     #[test]
     fn equations_are_solved_in_place() {
         for size in [1, 2, 4, 5, 16, 18, 37] {

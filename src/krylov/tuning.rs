@@ -1,33 +1,34 @@
-//! The tuned numbers of operators, preconditioners and conjugate gradients on a contact set: value, unit, what a wrong one costs,
-//! and how it was chosen.
+//! The tuned numbers of operators, preconditioners and conjugate gradients on a contact set: value, unit, what a wrong
+//! one costs, and how it was chosen.
 //!
-//! Each was halved and doubled, one at a time, on the cold solutions that `src/fixed_load/tuning.rs` names (172 + 105 iterations for
-//! pressures and stiffnesses), on its sweep (1227 convolutions), and on the four paths that `src/loading/tuning.rs` names (835, 419,
-//! 1899 and 245 convolutions). "No effect" means that these stayed as they were.
+//! Each was halved and doubled, one at a time, on the cold solutions that `src/fixed_load/tuning.rs` names (172 + 105
+//! iterations for pressures and stiffnesses), on its sweep (1227 convolutions), and on the four paths that
+//! `src/loading/tuning.rs` names (835, 419, 1899 and 245 convolutions). "No effect" means that these stayed as they
+//! were.
 
 // Conjugate gradients
 
-/// Error of a displacement in single precision, relative to the greatest, and to the noise that rounding errors of the spectrum
-/// come to. Those of several steps are independent of each other, and add up in the square. It is an error, not a choice: a test
-/// compares it with that of convolutions.
+/// Error of a displacement in single precision, relative to the greatest, and to the noise that rounding errors of the
+/// spectrum come to. Those of several steps are independent of each other, and add up in the square. It is an error,
+/// not a choice: a test compares it with that of convolutions.
 pub(crate) const SINGLE: f64 = 2e-7;
 /// Iterations go on to this part of the tolerance, and displacements are computed afresh once single precision
 /// may have spoilt as much of them: together they stay within it. Half: 1.06 times the convolutions of paths.
 pub(crate) const MARGIN: f64 = 0.5;
-/// Earlier directions to which a new one is made conjugate. One would do in exact arithmetic, and does above rounding: as many
-/// convolutions. Below it, where steps in single precision lead nowhere, a solution that is asked for 10⁻¹⁸ takes up to ten times the
-/// iterations to say so. Four: 1.03 times the iterations for stiffnesses.
+/// Earlier directions to which a new one is made conjugate. One would do in exact arithmetic, and does above rounding:
+/// as many convolutions. Below it, where steps in single precision lead nowhere, a solution that is asked for 10⁻¹⁸
+/// takes up to ten times the iterations to say so. Four: 1.03 times the iterations for stiffnesses.
 pub(crate) const MEMORY: usize = 2;
-/// Directions that are kept if they are to serve another right-hand side: the first ones hold the long
-/// waves, which right-hand sides have in common. None: 1.2 times the convolutions of paths. Half: 1.02 times. Twice: no effect.
+/// Directions that are kept if they are to serve another right-hand side: the first ones hold the long waves, which
+/// right-hand sides have in common. None: 1.2 times the convolutions of paths. Half: 1.02 times. Twice: no effect.
 pub(crate) const KEPT: usize = 12;
 
 // The sparse inverse
 
 /// Neighbours on which a node conditions, chosen by time and not by count.
 ///
-/// Without the coarse level of the preconditioner, with which there are fewer iterations: one cold solve to 1e-8 on
-/// a 512 × 512 self-affine surface (λ_s = 4 cells), at 3.4, 12.6 and 47 % contact: iterations for the pressure + for the
+/// Without the coarse level of the preconditioner, with which there are fewer iterations: one cold solve to 1e-8 on a
+/// 512 × 512 self-affine surface (λ_s = 4 cells), at 3.4, 12.6 and 47 % contact: iterations for the pressure + for the
 /// stiffness, all convolutions, and seconds of one thread with everything (some 0.1 s of it synthesis of the surface).
 ///
 /// |  k | 3.4 %               | 12.6 %              | 47 %                |
@@ -40,7 +41,8 @@ pub(crate) const KEPT: usize = 12;
 pub(crate) const NEIGHBOURS: usize = 8;
 /// If more than one node of so many changes, neighbours are looked for anew at all nodes: only time depends on it.
 pub(crate) const MANY: usize = 128;
-/// The same if there are so many times as many patterns as when that was last done, and `FEW` more: only memory depends on these.
+/// The same if there are so many times as many patterns as when that was last done, and `FEW` more: only memory depends
+/// on these.
 pub(crate) const GROWTH: usize = 2;
 pub(crate) const FEW: usize = 1024;
 /// Influences that differ by less may be the same, relative to C(0, 0): well above rounding in single precision.
@@ -50,22 +52,24 @@ pub(crate) const REACH: isize = 16;
 
 // The coarse space
 
-/// Cells between the knots of hat functions, where cells are square. Half: 0.97 of the iterations for stiffnesses up to 256², and 1.4
-/// times as many on 512² at 1.5 % of full load, where [`MOST`] makes blocks wide. Twice: 1.2 times the iterations.
+/// Cells between the knots of hat functions, where cells are square. Half: 0.97 of the iterations for stiffnesses up to
+/// 256², and 1.4 times as many on 512² at 1.5 % of full load, where [`MOST`] makes blocks wide. Twice: 1.2 times the
+/// iterations.
 pub(crate) const SPACING: f64 = 32.0;
-/// Hat functions along the longer side at most: the inverse of E is dense. Half: 1.1 times the iterations on 512². Twice: no effect up to
-/// there.
+/// Hat functions along the longer side at most: the inverse of E is dense. Half: 1.1 times the iterations on 512².
+/// Twice: no effect up to there.
 pub(crate) const MOST: f64 = 24.0;
-/// Hat functions below which there is nothing to be gained. Half: no effect. Twice, so that 128² has none: 1.1 times the iterations.
+/// Hat functions below which there is nothing to be gained. Half: no effect. Twice, so that 128² has none: 1.1 times
+/// the iterations.
 pub(crate) const FEWEST: usize = 9;
-/// Nodes in contact for each hat function below which nothing is gained either. Half: 1.03 times the convolutions of a sweep on 128².
-/// Twice: 0.97 of them.
+/// Nodes in contact for each hat function below which nothing is gained either. Half: 1.03 times the convolutions of a
+/// sweep on 128². Twice: 0.97 of them.
 pub(crate) const SPARSE: usize = 16;
 /// The diagonal of E is multiplied by the first of these, since hat functions are not the long waves themselves;
 /// by the next where E, a sum over aggregates, is not positive definite.
 pub(crate) const RIDGES: [f64; 3] = [1.3, 2.0, 4.0];
-/// Part of the contact that may change before E is computed anew: at 512 × 512 nodes and 5 to 95 %
-/// contact, E of a set without three tenths of the nodes takes as many steps, give or take two. Twice: 1.01 times the convolutions of a
+/// Part of the contact that may change before E is computed anew: at 512 × 512 nodes and 5 to 95 % contact, E of a set
+/// without three tenths of the nodes takes as many steps, give or take two. Twice: 1.01 times the convolutions of a
 /// sweep.
 pub(crate) const STALE: f64 = 0.1;
 /// Aggregates that are summed over at the same time, and values of a row that are.

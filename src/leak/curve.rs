@@ -49,20 +49,23 @@ impl LeakPoint {
 pub struct LeakCurve {
     /// In the order of loading.
     pub points: Vec<LeakPoint>,
-    /// The state at which the last channel closes, from which on nothing leaks. `None` if the path does not reach it, and if nodes leave
-    /// the contact, so that it has no order.
+    /// The state at which the last channel closes, from which on nothing leaks. `None` if the path does not reach it,
+    /// and if nodes leave the contact, so that it has no order.
     pub closing: Option<LoadingState>,
 }
 
 impl Seal {
-    /// The leak at some states of a path, up to the one at which the last channel closes: first touch, the last state that leaks, and then
-    /// always between the two neighbours that lie furthest apart in the mean pressure and the logarithm of the leak rate, each over its range.
+    /// The leak at some states of a path, up to the one at which the last channel closes: first touch, the last state
+    /// that leaks, and then always between the two neighbours that lie furthest apart in the mean pressure and the
+    /// logarithm of the leak rate, each over its range.
     ///
-    /// `history` are the states of the path from first touch on. Each point takes the gap of one state and one solution.
+    /// `history` are the states of the path from first touch on. Each point takes the gap of one state and one
+    /// solution.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of [`contact_sequence`] for states that are no path.
+    /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of [`contact_sequence`] for
+    /// states that are no path.
     pub fn curve(
         &self,
         path: &mut LoadingPath,
@@ -99,8 +102,8 @@ impl Seal {
 }
 
 impl Seal {
-    /// The place of the first state at which no channel wider than the least gap is left, up to the `closing` by contact: gaps only
-    /// become narrower under load.
+    /// The place of the first state at which no channel wider than the least gap is left, up to the `closing` by
+    /// contact: gaps only become narrower under load.
     fn closing_by_gap(
         &self,
         states: &[LoadingState],

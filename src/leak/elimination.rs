@@ -1,13 +1,14 @@
 //! Elimination of the nodes of a network, without a subtraction: conductances may be any number of decades apart.
 //!
-//! Without a node its neighbours are joined to each other, those of conductances a and b by a b / d more, d being the sum of all at the
-//! node (from a star to a mesh; Grassmann, Taksar and Heyman do the same with Markov chains). All are sums, products and
-//! quotients of positive numbers, so that each is right to rounding, relative to itself. Backwards, the pressure of a node is the mean of
-//! those of its neighbours, weighted by their conductances: the difference to the strongest one is added to its pressure. The
-//! error of the flow through any channel is then rounding of what flows through the meshes, which is no more than the whole flow.
+//! Without a node its neighbours are joined to each other, those of conductances a and b by a b / d more, d being the
+//! sum of all at the node (from a star to a mesh; Grassmann, Taksar and Heyman do the same with Markov chains). All are
+//! sums, products and quotients of positive numbers, so that each is right to rounding, relative to itself. Backwards,
+//! the pressure of a node is the mean of those of its neighbours, weighted by their conductances: the difference to the
+//! strongest one is added to its pressure. The error of the flow through any channel is then rounding of what flows
+//! through the meshes, which is no more than the whole flow.
 //!
-//! Nodes are eliminated in the order of nested dissection: lines of nodes that divide the others come after them. Fill-in is some
-//! 8 n log₂ n numbers on n nodes, work some 10 n^(3/2) (George, SIAM J. Numer. Anal. 10 (1973) 345).
+//! Nodes are eliminated in the order of nested dissection: lines of nodes that divide the others come after them.
+//! Fill-in is some 8 n log₂ n numbers on n nodes, work some 10 n^(3/2) (George, SIAM J. Numer. Anal. 10 (1973) 345).
 
 use super::expansion::{Expansion, difference, sum};
 use super::graph::Graph;
@@ -15,7 +16,8 @@ use super::graph::Graph;
 /// Nodes that are eliminated without dividing them further.
 const FEW: usize = 8;
 
-/// Nodes that are eliminated one after the other, first those of a part of the grid and at last the line that divides it.
+/// Nodes that are eliminated one after the other, first those of a part of the grid and at last the line that divides
+/// it.
 #[derive(Debug)]
 struct Block {
     /// The nodes that are eliminated, and all that they are joined to then.
@@ -58,8 +60,8 @@ pub(super) struct Elimination {
 }
 
 impl Elimination {
-    /// Eliminates all nodes. They lie at `places` of a lattice, and edges lead from one place to the next; along the second direction also
-    /// from the last to the first place if it `wraps`.
+    /// Eliminates all nodes. They lie at `places` of a lattice, and edges lead from one place to the next; along the
+    /// second direction also from the last to the first place if it `wraps`.
     pub(super) fn new(graph: &Graph, places: &[[usize; 2]], wraps: bool) -> Self {
         let nodes = graph.len();
         let (eliminated, front) = (vec![false; nodes + 2], vec![NONE; nodes + 2]);
@@ -200,7 +202,8 @@ impl Dissection<'_> {
         Mesh { nodes: left, rows, eliminated: own }
     }
 
-    /// The nodes of a line, their number, and behind them all that they and the meshes are joined to; each knows its place.
+    /// The nodes of a line, their number, and behind them all that they and the meshes are joined to; each knows its
+    /// place.
     fn front(&mut self, line: Vec<u32>, meshes: &[Mesh]) -> (Vec<u32>, usize) {
         let (mut nodes, own) = (Vec::new(), line.len());
         let edges = line.iter().flat_map(|&node| self.graph.edges(node as usize));

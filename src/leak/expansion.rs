@@ -1,4 +1,5 @@
-//! Numbers as sums of four, each small beside the one before it: 64 digits, so that small differences of large pressures are not lost.
+//! Numbers as sums of four, each small beside the one before it: 64 digits, so that small differences of large
+//! pressures are not lost.
 
 /// A number, from its greatest part on.
 pub(super) type Expansion = [f64; 4];
@@ -58,7 +59,8 @@ mod tests {
         assert_eq!(difference(first, first), 0.0);
     }
 
-    /// Numbers on both sides of a power of two: their greatest parts differ by rounding, and the next ones make up for it.
+    /// Numbers on both sides of a power of two: their greatest parts differ by rounding, and the next ones make up for
+    /// it.
     #[test]
     fn differences_across_a_power_of_two() {
         let half = f64::EPSILON / 2.0;

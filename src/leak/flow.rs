@@ -1,6 +1,7 @@
 //! The flow through a network: pressures that let nothing be lost at any node.
 //!
-//! They are found by elimination, on more nodes by iterations, and again by elimination where the iterations do not end.
+//! They are found by elimination, on more nodes by iterations, and again by elimination where the iterations do not
+//! end.
 
 use super::elimination::Elimination;
 use super::expansion::{Expansion, difference, sum};
@@ -11,11 +12,12 @@ use crate::Error;
 
 /// What may be lost at all nodes together, of what flows from edge to edge.
 ///
-/// Rounding loses some 10⁻¹⁶ of the flow through each face, and the flow passes some N to 5 N faces along the N nodes from edge to edge: 10⁻¹² on
-/// 4096 of them.
+/// Rounding loses some 10⁻¹⁶ of the flow through each face, and the flow passes some N to 5 N faces along the N nodes
+/// from edge to edge: 10⁻¹² on 4096 of them.
 const LOST: f64 = 1e-11;
-/// Greatest change of a pressure that a further correction would bring, over the pressure drop: what hangs on a weak channel alone loses
-/// little, wherever its pressure is. A correction reduces errors of all kinds by about as much as the residual: this is what multigrid does.
+/// Greatest change of a pressure that a further correction would bring, over the pressure drop: what hangs on a weak
+/// channel alone loses little, wherever its pressure is. A correction reduces errors of all kinds by about as much as
+/// the residual: this is what multigrid does.
 const SETTLED: f64 = 1e-10;
 /// Least residual of a correction, relative to what it is to correct: as far as it can be followed in double precision.
 const CORRECTED: f64 = 1e-8;
@@ -23,19 +25,22 @@ const CORRECTED: f64 = 1e-8;
 const LESS: f64 = 0.1;
 /// Greatest residual of a correction.
 const LARGEST: f64 = 1e-2;
-/// Most iterations of a correction, and most corrections: a flow of 10⁻³⁶ of what flows at the open edge takes some 7 of them.
+/// Most iterations of a correction, and most corrections: a flow of 10⁻³⁶ of what flows at the open edge takes some 7
+/// of them.
 const ITERATIONS: usize = 400;
 const CORRECTIONS: usize = 20;
 /// Corrections that make nothing better before it is given up.
 const IDLE: usize = 3;
-/// Most nodes that are eliminated at once. It takes half the time of the iterations on them, and some 900 bytes for each; both grow faster
-/// than the number of nodes.
+/// Most nodes that are eliminated at once. It takes half the time of the iterations on them, and some 900 bytes for
+/// each; both grow faster than the number of nodes.
 const MOST_ELIMINATED: usize = 1 << 20;
 
-/// Pressures, relative to the pressure drop, and what flows, relative to the conductance of a square of the greatest gap.
+/// Pressures, relative to the pressure drop, and what flows, relative to the conductance of a square of the greatest
+/// gap.
 #[derive(Debug)]
 pub(super) struct Flow {
-    /// Of each flowing node, by its place among them: a sum of four numbers, so that small differences of large pressures are not lost.
+    /// Of each flowing node, by its place among them: a sum of four numbers, so that small differences of large
+    /// pressures are not lost.
     pressures: Vec<Expansion>,
     /// The place of each node of the grid among those that flow.
     numbers: Vec<u32>,
@@ -82,7 +87,8 @@ impl Flow {
         })
     }
 
-    /// The same by elimination, to which conductances of any contrast are alike: a correction only takes what rounding left.
+    /// The same by elimination, to which conductances of any contrast are alike: a correction only takes what rounding
+    /// left.
     fn eliminate(&mut self, network: &Network, flowing: &[usize]) -> bool {
         let places: Vec<_> = flowing.iter().map(|&node| network.layout.place(node)).collect();
         let graph = self.graph(network, flowing, false);
@@ -97,9 +103,9 @@ impl Flow {
         })
     }
 
-    /// Corrects the pressures until nothing is lost and `change` is small, the greatest one that a further correction would bring; says
-    /// whether that is so. A correction adds to the pressures what the residual asks for, to some reduction of it, and
-    /// returns its iterations and the next change.
+    /// Corrects the pressures until nothing is lost and `change` is small, the greatest one that a further correction
+    /// would bring; says whether that is so. A correction adds to the pressures what the residual asks for, to some
+    /// reduction of it, and returns its iterations and the next change.
     fn settle(
         &mut self,
         network: &Network,
@@ -196,8 +202,8 @@ impl Flow {
     }
 }
 
-/// Solves for a correction by flexible conjugate gradients, as well as the residual can be followed; returns the number of iterations.
-/// What is left of the residual takes its place.
+/// Solves for a correction by flexible conjugate gradients, as well as the residual can be followed; returns the number
+/// of iterations. What is left of the residual takes its place.
 fn correct(
     hierarchy: &mut Hierarchy,
     (residual, reduction): (&mut [f64], f64),
@@ -233,7 +239,8 @@ mod tests {
     use crate::surface::Axis;
     use crate::{Boundary, Grid};
 
-    /// The flow through gaps of some decades in no order, a quarter of them closed, by elimination and by iterations where these end.
+    /// The flow through gaps of some decades in no order, a quarter of them closed, by elimination and by iterations
+    /// where these end.
     fn both(decades: f64, boundary: Boundary) -> Result<(Flow, Option<Flow>), Error> {
         let (nx, ny) = (40, 30);
         let mut state = 1_u64;
@@ -271,7 +278,8 @@ mod tests {
         Ok(())
     }
 
-    /// Where iterations do not end, elimination is as good as ever: flows through some hundred nodes, each lost to rounding.
+    /// Where iterations do not end, elimination is as good as ever: flows through some hundred nodes, each lost to
+    /// rounding.
     #[test]
     fn elimination_is_right_where_iterations_do_not_end() -> Result<(), Error> {
         let (eliminated, iterated) = both(12.0, Boundary::Periodic)?;

@@ -1,7 +1,7 @@
 //! Laplacians of weighted graphs, kept as their edges: `(A x)ᵢ = eᵢ xᵢ + Σⱼ wᵢⱼ (xᵢ − xⱼ)` with positive weights.
 //!
-//! No number is ever the difference of two others. Sums of weights are therefore right to rounding, each relative to itself, however
-//! far the weights are apart; diagonals of a matrix would lose those that are small beside others.
+//! No number is ever the difference of two others. Sums of weights are therefore right to rounding, each relative to
+//! itself, however far the weights are apart; diagonals of a matrix would lose those that are small beside others.
 
 /// A graph, and the conductances from its nodes to a ground.
 #[derive(Debug, Clone, Default)]
@@ -59,7 +59,8 @@ impl Graph {
         self.diagonal[node]
     }
 
-    /// The graph of groups of nodes, `groups` of them: conductances between groups are the sums of those between their nodes.
+    /// The graph of groups of nodes, `groups` of them: conductances between groups are the sums of those between their
+    /// nodes.
     pub(super) fn grouped(&self, group_of: &[u32], groups: usize) -> Self {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); groups];
         for (node, &group) in group_of.iter().enumerate() {
@@ -130,8 +131,8 @@ impl Graph {
     }
 }
 
-/// The same as a matrix to calculate with: each edge once, at the later one of its nodes. What flows through it is taken from one node and
-/// given to the other.
+/// The same as a matrix to calculate with: each edge once, at the later one of its nodes. What flows through it is
+/// taken from one node and given to the other.
 #[derive(Debug, Clone)]
 pub(super) struct Matrix {
     start: Vec<usize>,
@@ -183,8 +184,8 @@ impl Matrix {
         }
     }
 
-    /// Sweeps forwards from zero: the lower triangle of A, inverted. `residual` becomes what is left of `b`: nodes before are up to date when
-    /// a node is, so that it comes from those behind it.
+    /// Sweeps forwards from zero: the lower triangle of A, inverted. `residual` becomes what is left of `b`: nodes
+    /// before are up to date when a node is, so that it comes from those behind it.
     pub(super) fn sweep_forwards(&self, b: &[f64], x: &mut [f64], residual: &mut [f64]) {
         for node in 0..x.len() {
             let inflow: f64 = self.edges(node).map(|(other, weight)| weight * x[other]).sum();
@@ -228,8 +229,9 @@ mod tests {
         graph
     }
 
-    /// Under 1e-20 into the last node: of the two ways to the ground one conducts 3e-20 and the other 1 / (1/2 + 1 + 1e20 + 1), which
-    /// is 1e-20; the last node is at 1/4 plus 3/4 of the drop of its part through weights of 1, which is below rounding.
+    /// Under 1e-20 into the last node: of the two ways to the ground one conducts 3e-20 and the other 1 / (1/2 + 1 +
+    /// 1e20 + 1), which is 1e-20; the last node is at 1/4 plus 3/4 of the drop of its part through weights of 1, which
+    /// is below rounding.
     #[test]
     fn conductances_far_apart_are_solved_to_rounding() {
         let graph = chain();

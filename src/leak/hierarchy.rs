@@ -1,9 +1,9 @@
 //! Coarser and coarser graphs, and cycles through them as a preconditioner.
 //!
-//! Nodes are grouped in pairs, and these in pairs again, along their strongest edges: what a weak channel joins is grouped after all else.
-//! Each group takes one value. Every level is solved by up to two steps of flexible conjugate gradients whose preconditioner is the
-//! next one (a K-cycle), with which the number of iterations does not grow with the grid: Notay, Electron. Trans. Numer. Anal. 37
-//! (2010) 123; Napov and Notay, SIAM J. Sci. Comput. 34 (2012) A1079.
+//! Nodes are grouped in pairs, and these in pairs again, along their strongest edges: what a weak channel joins is
+//! grouped after all else. Each group takes one value. Every level is solved by up to two steps of flexible conjugate
+//! gradients whose preconditioner is the next one (a K-cycle), with which the number of iterations does not grow with
+//! the grid: Notay, Electron. Trans. Numer. Anal. 37 (2010) 123; Napov and Notay, SIAM J. Sci. Comput. 34 (2012) A1079.
 
 use super::graph::{Graph, Matrix};
 
@@ -11,11 +11,11 @@ use super::graph::{Graph, Matrix};
 const SMALLEST: usize = 24;
 /// Greatest ratio of the energies of the smoother and of the graph that a pair may have: Napov and Notay's threshold.
 const QUALITY: f64 = 8.0;
-/// A node that finds no other to pair with joins the pair of its strongest neighbour, if that edge has this share of its
-/// conductances.
+/// A node that finds no other to pair with joins the pair of its strongest neighbour, if that edge has this share of
+/// its conductances.
 const STRONG: f64 = 0.25;
-/// A level is visited twice from the one above if it has at most this share of its edges: the work of all levels is then no more than
-/// four times that of the first.
+/// A level is visited twice from the one above if it has at most this share of its edges: the work of all levels is
+/// then no more than four times that of the first.
 const TWICE: f64 = 0.375;
 /// A second step is left out if the first has reduced the residual to this share.
 const REDUCED: f64 = 0.25;
@@ -197,8 +197,8 @@ fn coarsen(graph: &Graph) -> (Vec<u32>, Graph) {
     (group_of, coarse)
 }
 
-/// Pairs each node with the neighbour with which it makes the best pair, for a smoother with these diagonals; returns the group of each
-/// node, and their number.
+/// Pairs each node with the neighbour with which it makes the best pair, for a smoother with these diagonals; returns
+/// the group of each node, and their number.
 fn paired(graph: &Graph, diagonals: &[f64]) -> (Vec<u32>, usize) {
     const NONE: u32 = u32::MAX;
     let mut group_of = vec![NONE; graph.len()];
@@ -304,7 +304,8 @@ mod tests {
         assert_eq!(coarse.ground, [1.0]);
     }
 
-    /// One iteration with the cycle as preconditioner reduces the error in the energy norm, on conductances of ten decades too.
+    /// One iteration with the cycle as preconditioner reduces the error in the energy norm, on conductances of ten
+    /// decades too.
     #[test]
     fn a_cycle_is_a_good_solution() {
         let mut all = Hierarchy::new(lattice(40));

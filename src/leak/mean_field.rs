@@ -1,7 +1,7 @@
 //! The conductivity of a mixture, in the mean field of itself.
 
-/// Bruggeman's conductivity in two dimensions: the one at which `Σ (κ − K) / (κ + K)` vanishes, with closed nodes at κ = 0. It is 0 from the
-/// half of the nodes closed on, where this theory sees the last channel close.
+/// Bruggeman's conductivity in two dimensions: the one at which `Σ (κ − K) / (κ + K)` vanishes, with closed nodes at κ
+/// = 0. It is 0 from the half of the nodes closed on, where this theory sees the last channel close.
 pub(super) fn bruggeman(conductivity: &[f64]) -> f64 {
     let open = || conductivity.iter().copied().filter(|conductivity| *conductivity > 0.0);
     let (least, greatest) = open().fold((f64::INFINITY, 0.0_f64), |(a, b), k| (a.min(k), b.max(k)));
@@ -15,8 +15,8 @@ pub(super) fn bruggeman(conductivity: &[f64]) -> f64 {
             (false, false) => 0.0,
         };
     }
-    // The sum falls with K. It is no less at 0 than the share of open nodes over that of closed ones, so that a root is there; below the
-    // least conductivity it may lie far.
+    // The sum falls with K. It is no less at 0 than the share of open nodes over that of closed ones, so that a root is
+    // there; below the least conductivity it may lie far.
     let excess = |k: f64| conductivity.iter().map(|c| (c - k) / (c + k)).sum::<f64>();
     let (mut low, mut high) = (least.ln() - 60.0, greatest.ln());
     // Sixty halves of at most 480: to rounding.
@@ -35,7 +35,8 @@ pub(super) fn bruggeman(conductivity: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Closed forms: one conductivity; equal shares of two, whose geometric mean it is; one among closed nodes, c (2 f − 1).
+    /// Closed forms: one conductivity; equal shares of two, whose geometric mean it is; one among closed nodes, c (2 f
+    /// − 1).
     #[test]
     fn closed_forms_of_mixtures() {
         assert_eq!(bruggeman(&[0.3; 5]), 0.3);

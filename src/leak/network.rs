@@ -1,17 +1,18 @@
-//! The nodes out of contact as a network of channels: conductances between neighbours, and which of them the fluid flows
-//! through.
+//! The nodes out of contact as a network of channels: conductances between neighbours, and which of them the fluid
+//! flows through.
 
 use nalgebra::DMatrix;
 
 use crate::surface::Axis;
 use crate::{Boundary, Error, Grid};
 
-/// A gap that is so small beside the greatest one counts as closed. Pressures of 64 digits resolve the flow through conductances of 36
-/// decades to 10⁻²⁰ of itself, and what 10⁸ nodes lose together to less than may be lost.
+/// A gap that is so small beside the greatest one counts as closed. Pressures of 64 digits resolve the flow through
+/// conductances of 36 decades to 10⁻²⁰ of itself, and what 10⁸ nodes lose together to less than may be lost.
 const CLOSED: f64 = 1e-12;
 /// Greatest ratio of the sides of a cell, for the same reason.
 const ASPECT: f64 = 1e6;
-/// Overlap of nodes out of contact, beside the greatest gap, that iterations and rounding may leave; it counts as closed.
+/// Overlap of nodes out of contact, beside the greatest gap, that iterations and rounding may leave; it counts as
+/// closed.
 const OVERLAP: f64 = 1e-4;
 
 /// What lies beyond a face of a cell.

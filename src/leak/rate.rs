@@ -19,31 +19,33 @@ const IN_RANGE: &str = "positive and finite in the units of the input";
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Leak {
-    /// Leak rate Q \[m³/s\] through the whole width of the grid: exactly 0 if no channel leads from edge to edge. Of a [gas](Seal::with_gas) it
-    /// is the volume at the pressure of the outlet.
+    /// Leak rate Q \[m³/s\] through the whole width of the grid: exactly 0 if no channel leads from edge to edge. Of a
+    /// [gas](Seal::with_gas) it is the volume at the pressure of the outlet.
     pub leak_rate: f64,
-    /// Permeability along the flow, $`K_{aa} = Q L_a / (L_c \Delta p)`$ \[m³/(Pa s)\], with the sides of the grid along and across: of a
-    /// gap g everywhere it is g³/12η.
+    /// Permeability along the flow, $`K_{aa} = Q L_a / (L_c \Delta p)`$ \[m³/(Pa s)\], with the sides of the grid along
+    /// and across: of a gap g everywhere it is g³/12η.
     pub permeability: f64,
-    /// Permeability across, $`K_{ca}`$ \[m³/(Pa s)\]: the mean flux across the flow over the mean pressure gradient along it. `None` on a free
-    /// boundary, whose sides let nothing pass.
+    /// Permeability across, $`K_{ca}`$ \[m³/(Pa s)\]: the mean flux across the flow over the mean pressure gradient
+    /// along it. `None` on a free boundary, whose sides let nothing pass.
     pub transverse_permeability: Option<f64>,
-    /// Bruggeman's estimate of the leak rate \[m³/s\]: that of a uniform gap with the conductivity of a random mixture of these gaps.
+    /// Bruggeman's estimate of the leak rate \[m³/s\]: that of a uniform gap with the conductivity of a random mixture
+    /// of these gaps.
     pub mean_field_leak_rate: f64,
     /// The narrowest place of the widest channel; `None` if nothing leaks.
     pub constriction: Option<CriticalConstriction>,
-    /// Fluid pressure \[Pa\] at each node above that of the outlet, between the pressure drop at the edge where the fluid enters and 0. NaN where there is no fluid and
-    /// in pools that are cut off from both edges, whose pressure is any. Where the fluid rests it is that of its edge.
+    /// Fluid pressure \[Pa\] at each node above that of the outlet, between the pressure drop at the edge where the
+    /// fluid enters and 0. NaN where there is no fluid and in pools that are cut off from both edges, whose pressure is
+    /// any. Where the fluid rests it is that of its edge.
     pub pressure: DMatrix<f64>,
     /// Flux \[m²/s\], volume per time and width, along x.
     pub flux_x: DMatrix<f64>,
     /// The same along y.
     pub flux_y: DMatrix<f64>,
-    /// Leak rate \[m³/s\] through each section across the flow, from edge to edge: one more than there are nodes along it. They are equal
-    /// as far as the fluid is conserved.
+    /// Leak rate \[m³/s\] through each section across the flow, from edge to edge: one more than there are nodes along
+    /// it. They are equal as far as the fluid is conserved.
     pub sections: Vec<f64>,
-    /// What is lost at all nodes together over the leak rate: at most 10⁻¹¹. No section has another leak rate by more, and the leak rate
-    /// is off by no more from that of the exact solution of these equations.
+    /// What is lost at all nodes together over the leak rate: at most 10⁻¹¹. No section has another leak rate by more,
+    /// and the leak rate is off by no more from that of the exact solution of these equations.
     pub imbalance: f64,
     /// Number of nodes through which the fluid flows.
     pub flowing_nodes: usize,
@@ -62,25 +64,28 @@ pub struct CriticalConstriction {
     pub node: (usize, usize),
     /// The gap there \[m\].
     pub gap: f64,
-    /// The share of the pressure drop from one side of its cell to the other: the greatest difference between its sides.
+    /// The share of the pressure drop from one side of its cell to the other: the greatest difference between its
+    /// sides.
     pub pressure_drop: f64,
-    /// The share of the power Q Δp that is lost in the square of 9 × 9 cells about it. If all of the fluid passes here, it is the share of the
-    /// pressure drop that falls there.
+    /// The share of the power Q Δp that is lost in the square of 9 × 9 cells about it. If all of the fluid passes here,
+    /// it is the share of the pressure drop that falls there.
     pub dissipation: f64,
 }
 
 impl Seal {
-    /// The leak through a gap \[m\], where nothing flows through nodes in contact. The sides are open to each other on a periodic
-    /// boundary, and closed on a free one.
+    /// The leak through a gap \[m\], where nothing flows through nodes in contact. The sides are open to each other on
+    /// a periodic boundary, and closed on a free one.
     ///
-    /// A gap that is not positive is closed as well, and so is one below 10⁻¹² of the greatest. It takes some 1 s and 220 MB on
-    /// 512 × 512 nodes, 7 s and 1 GB on 1024 × 1024; above that memory is proportional to the grid, as far as iterations converge.
+    /// A gap that is not positive is closed as well, and so is one below 10⁻¹² of the greatest. It takes some 1 s and
+    /// 220 MB on 512 × 512 nodes, 7 s and 1 GB on 1024 × 1024; above that memory is proportional to the grid, as far as
+    /// iterations converge.
     ///
     /// # Errors
     ///
-    /// [`Error::GridMismatch`] for a field of another shape; [`Error::FieldNotFinite`]; [`Error::OutOfRange`] for nodes out of contact that
-    /// overlap by more than 10⁻⁴ of the greatest gap, for cells more than 10⁶ times as long as wide, and for leak rates
-    /// that over- or underflow; [`Error::NotPositive`] for such a conductivity; [`Error::NoConvergence`].
+    /// [`Error::GridMismatch`] for a field of another shape; [`Error::FieldNotFinite`]; [`Error::OutOfRange`] for nodes
+    /// out of contact that overlap by more than 10⁻⁴ of the greatest gap, for cells more than 10⁶ times as long as
+    /// wide, and for leak rates that over- or underflow; [`Error::NotPositive`] for such a conductivity;
+    /// [`Error::NoConvergence`].
     pub fn leak(
         &self,
         gap: &DMatrix<f64>,

@@ -16,7 +16,8 @@ pub struct Seal {
 }
 
 impl Seal {
-    /// A fluid of the viscosity η \[Pa s\] under the pressure drop Δp \[Pa\] from the lower end of an axis to the upper one.
+    /// A fluid of the viscosity η \[Pa s\] under the pressure drop Δp \[Pa\] from the lower end of an axis to the upper
+    /// one.
     ///
     /// # Errors
     ///
@@ -44,9 +45,10 @@ impl Seal {
 
     /// The same with an ideal gas of one temperature, which leaves at this absolute pressure \[Pa\].
     ///
-    /// Its density is in proportion to its pressure, so that `∇·(g³ p ∇p) = 0`, which is the equation of a liquid for p². Leak rates and fluxes are
-    /// volumes at the pressure of the outlet, $`1 + \Delta p / 2 p_2`$ times those of a liquid; times that pressure they are the throughput
-    /// \[Pa m³/s\], of which 1 is 10 mbar l/s. Gases slip where gaps are not far above their mean free path (air of 1 bar: 0.07 µm), and leak more.
+    /// Its density is in proportion to its pressure, so that `∇·(g³ p ∇p) = 0`, which is the equation of a liquid for
+    /// p². Leak rates and fluxes are volumes at the pressure of the outlet, $`1 + \Delta p / 2 p_2`$ times those of a
+    /// liquid; times that pressure they are the throughput \[Pa m³/s\], of which 1 is 10 mbar l/s. Gases slip where
+    /// gaps are not far above their mean free path (air of 1 bar: 0.07 µm), and leak more.
     ///
     /// # Errors
     ///

@@ -143,8 +143,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         LoadingBuilder { settings: self.settings, updater }
     }
 
-    /// Whether the updater is given up for [`ConjugateGradient`] once that is cheaper for the rest of the path, or where the updater does
-    /// not fit into the memory budget: see [`Handover`], for which it is so unless this says otherwise. Other updaters stay.
+    /// Whether the updater is given up for [`ConjugateGradient`] once that is cheaper for the rest of the path, or
+    /// where the updater does not fit into the memory budget: see [`Handover`], for which it is so unless this says
+    /// otherwise. Other updaters stay.
     pub fn hand_over(mut self, may_end: bool) -> Self {
         self.settings.hand_over = Some(may_end);
         self
@@ -206,13 +207,15 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     }
 
     /// Limits the pressure to a hardness H \[Pa\]: elastic–perfectly plastic contact (Almqvist et al., Tribology
-    /// International 40 (2007) 574). A node whose pressure rises to H *yields*, a state of its own ([`ContactEvent::Yield`]): from then on it carries
-    /// H, stays in contact, and loses as much of its height as it would overlap. The path goes on behind full contact until all nodes
-    /// have yielded, under the load H A, unless a limit ends it; no load limit may be as great as that. Infinity limits nothing.
+    /// International 40 (2007) 574). A node whose pressure rises to H *yields*, a state of its own
+    /// ([`ContactEvent::Yield`]): from then on it carries H, stays in contact, and loses as much of its height as it
+    /// would overlap. The path goes on behind full contact until all nodes have yielded, under the load H A, unless a
+    /// limit ends it; no load limit may be as great as that. Infinity limits nothing.
     ///
     /// Contact must be known to grow ([`ContactGrowth`]). An updater needs two more verbs for it,
     /// [`watch_both`](LinearUpdater::watch_both) and [`solve_for`](LinearUpdater::solve_for); iterations
-    /// ([`ConjugateGradient`]) serve it as well, and take over from a factor as on elastic paths. That factor holds elastic nodes only.
+    /// ([`ConjugateGradient`]) serve it as well, and take over from a factor as on elastic paths. That factor holds
+    /// elastic nodes only.
     ///
     /// [`ContactEvent::Yield`]: super::ContactEvent::Yield
     pub fn hardness(mut self, hardness: f64) -> Self {
@@ -239,10 +242,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     ///
     /// # Errors
     ///
-    /// Those of [`Problem::new`]; [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no
-    /// sense; [`Error::MemoryBudget`] if not even the grid fits. With a hardness [`Error::NotPositive`] and [`Error::GridMismatch`]
-    /// for itself, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that
-    /// contact grows.
+    /// Those of [`Problem::new`]; [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no sense;
+    /// [`Error::MemoryBudget`] if not even the grid fits. With a hardness [`Error::NotPositive`] and
+    /// [`Error::GridMismatch`] for itself, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a
+    /// kernel that does not promise that contact grows.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
         let phase = Phase::new(self.updater, self.settings.hand_over);
         self.settings.build(phase).map(LoadingSolver::of)
@@ -251,8 +254,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// The same path, to go on behind states that it yielded before, in another process perhaps: the next state
     /// is the one after the last event among them. A limit is no event.
     ///
-    /// States [of a record](crate::record::LoadingRecord::history) know the end of their last window, where the path then goes on: see
-    /// [`LoadingRecord::resume`](crate::record::LoadingRecord::resume).
+    /// States [of a record](crate::record::LoadingRecord::history) know the end of their last window, where the path
+    /// then goes on: see [`LoadingRecord::resume`](crate::record::LoadingRecord::resume).
     ///
     /// Otherwise nothing is searched for again: a factor is made of the nodes in contact in large blocks, n³/3 flops at
     /// the speed of a matrix product; without one a solution is all. The solution is compared with the last state,
@@ -261,9 +264,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// # Errors
     ///
     /// Those of [`Self::build`]; [`Error::OutOfRange`] for a limit that the states have passed (for the state there see
-    /// [`History::ending_at`]); [`Error::NotOnPath`] for states that are not those of this path, or not in
-    /// the order of a path; [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for nodes that
-    /// are in no such order; [`Error::MemoryBudget`]; those of the updater.
+    /// [`History::ending_at`]); [`Error::NotOnPath`] for states that are not those of this path, or not in the order of
+    /// a path; [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for nodes that are in
+    /// no such order; [`Error::MemoryBudget`]; those of the updater.
     pub fn resume(self, history: &History) -> Result<LoadingSolver<U>, Error> {
         let mut solver = self.build()?;
         solver.go_on(history)?;

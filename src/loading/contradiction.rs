@@ -26,8 +26,8 @@ impl Slack {
     };
 }
 
-/// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns how much
-/// earlier the first was not yet, as far as the rates tell: not after 0.
+/// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns
+/// how much earlier the first was not yet, as far as the rates tell: not after 0.
 pub(super) fn contradiction(
     run: &LoadingRun,
     (problem, contact, yielded): (&Problem, &ContactSequence, &[usize]),

@@ -59,8 +59,8 @@ mod tests {
         WindowCost { solve, schur, convolution, most_watched }
     }
 
-    /// With k nodes watched an event costs `(R + s n k² + 0.08 · 0.85² k³ / 2) / (0.85 k)` for a refresh of R, which is least
-    /// at `R = s n k² + 0.0578 k³`. Sizes are tried in steps of a twentieth.
+    /// With k nodes watched an event costs `(R + s n k² + 0.08 · 0.85² k³ / 2) / (0.85 k)` for a refresh of R, which is
+    /// least at `R = s n k² + 0.0578 k³`. Sizes are tried in steps of a twentieth.
     #[test]
     fn windows_are_the_cheapest() {
         let near = |(contact, nodes): (usize, usize), cost: WindowCost, best: f64| {

@@ -2,7 +2,8 @@
 
 use super::tuning::{FACTOR, HANDOVER, ITERATIONS, SAVED, STEP, WINDOW};
 
-/// Seconds that an event with a factor of so many nodes takes on a machine with two cores: for telling how long a path will take.
+/// Seconds that an event with a factor of so many nodes takes on a machine with two cores: for telling how long a path
+/// will take.
 #[doc(hidden)]
 #[must_use]
 pub fn factor_seconds(contact: usize) -> f64 {
@@ -16,8 +17,8 @@ pub fn iteration_seconds(nodes: usize, contact: usize) -> f64 {
     WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact as f64
 }
 
-/// Nodes in contact at which a factor costs as much as iterations on a grid of `nodes`: it is not given up before, if memory
-/// allows.
+/// Nodes in contact at which a factor costs as much as iterations on a grid of `nodes`: it is not given up before, if
+/// memory allows.
 #[doc(hidden)]
 #[must_use]
 pub fn last_factor(nodes: usize) -> usize {
@@ -131,8 +132,8 @@ mod tests {
         assert_eq!([100, 1000].map(last_factor), [100, 1000]);
     }
 
-    /// From n to m nodes, by integrals: `10⁻¹¹ (m³ − n³) / 3` with a factor; without, `(3·10⁻⁴ + 1.2·10⁻⁹ N)(m − n) + 2·10⁻⁹ (m² − n²)`, and
-    /// `1.3·10⁻⁶ N + 8·10⁻⁶ n` to begin with. The factor goes if that is less than four fifths.
+    /// From n to m nodes, by integrals: `10⁻¹¹ (m³ − n³) / 3` with a factor; without, `(3·10⁻⁴ + 1.2·10⁻⁹ N)(m − n) +
+    /// 2·10⁻⁹ (m² − n²)`, and `1.3·10⁻⁶ N + 8·10⁻⁶ n` to begin with. The factor goes if that is less than four fifths.
     #[test]
     fn a_factor_is_given_up_for_a_fifth_of_what_is_left() {
         let is_cheaper = |nodes: f64, n: f64, m: f64| {
@@ -161,8 +162,8 @@ mod tests {
         assert_eq!(greatest_factor(64 * 64, 4096), 4096);
     }
 
-    /// 8000 elastic nodes on 256 × 256: an event takes 0.64 ms with a factor, 0.41 ms without, and the hand-over 0.15 s. Fewer nodes are
-    /// cheaper in a factor for any number of events.
+    /// 8000 elastic nodes on 256 × 256: an event takes 0.64 ms with a factor, 0.41 ms without, and the hand-over 0.15
+    /// s. Fewer nodes are cheaper in a factor for any number of events.
     #[test]
     fn a_factor_of_one_size_is_given_up_for_many_events() {
         let rest = |contact, events| Rest::steady(256 * 256, contact, events).is_cheaper_without();

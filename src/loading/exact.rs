@@ -1,4 +1,5 @@
-//! Events in windows with a factor, on bodies whose contact only grows: nodes that touch, and with a hardness elastic nodes that yield.
+//! Events in windows with a factor, on bodies whose contact only grows: nodes that touch, and with a hardness elastic
+//! nodes that yield.
 
 use std::time::Instant;
 
@@ -20,12 +21,13 @@ use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Solution, join_all};
 use crate::{ContactGrowth, Error, Problem};
 
-/// Finds events in windows: what may happen before the *horizon*, the time of the next event of any node that is not watched.
+/// Finds events in windows: what may happen before the *horizon*, the time of the next event of any node that is not
+/// watched.
 ///
-/// Where contact only grows and nobody yields, that time is a lower bound if the kernel is convex. Otherwise a window is solved at its end
-/// and checked there: gaps only close and pressures only grow, so that what is right at the end was right throughout. Where the end
-/// contradicts events, fewer are played. Nodes that yield leave the factor, which cannot be undone: a window with such events is solved with
-/// the factor as it was.
+/// Where contact only grows and nobody yields, that time is a lower bound if the kernel is convex. Otherwise a window
+/// is solved at its end and checked there: gaps only close and pressures only grow, so that what is right at the end
+/// was right throughout. Where the end contradicts events, fewer are played. Nodes that yield leave the factor, which
+/// cannot be undone: a window with such events is solved with the factor as it was.
 #[derive(Debug)]
 pub(super) struct Exact {
     growth: ContactGrowth,
@@ -61,8 +63,8 @@ impl Exact {
         }
     }
 
-    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if nothing can happen to
-    /// any node. Returns what went wrong after them.
+    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if
+    /// nothing can happen to any node. Returns what went wrong after them.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
@@ -118,8 +120,8 @@ impl Exact {
         self.is_behind.then(|| run.field.solution().clone())
     }
 
-    /// Goes on behind these windows, from a solution of the factor before, if there is one. The nodes that the last one left are watched
-    /// in the same order.
+    /// Goes on behind these windows, from a solution of the factor before, if there is one. The nodes that the last one
+    /// left are watched in the same order.
     pub(super) fn follow_on(&mut self, log: FactorLog, is_behind: bool) {
         self.window = Window::ended_with(log.untouched());
         self.log = log;
@@ -160,9 +162,9 @@ impl Exact {
         if self.size.is_some() { 1 } else { MULTIPLE }
     }
 
-    /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their
-    /// number, `size` or a little less, and the horizon: until then none of the others ties with one that is watched. The first
-    /// node touches at `first` after an approach.
+    /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their number, `size`
+    /// or a little less, and the horizon: until then none of the others ties with one that is watched. The first node
+    /// touches at `first` after an approach.
     fn choose(
         &mut self,
         mut size: usize,
@@ -264,8 +266,8 @@ impl Exact {
         Ok(())
     }
 
-    /// Lets path and updater follow to the end of the window, after taking back its last events as long as that contradicts them. The
-    /// first event follows from a solution, and needs no check.
+    /// Lets path and updater follow to the end of the window, after taking back its last events as long as that
+    /// contradicts them. The first event follows from a solution, and needs no check.
     fn follow(
         &mut self,
         run: &mut LoadingRun,
@@ -312,7 +314,8 @@ impl Exact {
         self.window.events().last().map_or(0.0, |event| event.time)
     }
 
-    /// Takes back events that a contradiction at the end of the window says were none, `until` before the end; returns how many.
+    /// Takes back events that a contradiction at the end of the window says were none, `until` before the end; returns
+    /// how many.
     fn take_back(&mut self, run: &mut LoadingRun, until: Option<f64>, fewest: &mut usize) -> usize {
         let events = self.window.events();
         let Some(until) = until.filter(|_| events.len() > 1) else {
@@ -327,8 +330,8 @@ impl Exact {
         dropped
     }
 
-    /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns with it how
-    /// much before the end the first contradiction was, as far as rates tell.
+    /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns
+    /// with it how much before the end the first contradiction was, as far as rates tell.
     fn try_end(
         &mut self,
         run: &mut LoadingRun,
@@ -422,7 +425,8 @@ impl Exact {
         Ok(())
     }
 
-    /// The error of a window whose end pulls at a node: contact does not grow as the kernel promises. The next window needs the same solution.
+    /// The error of a window whose end pulls at a node: contact does not grow as the kernel promises. The next window
+    /// needs the same solution.
     fn pulled(
         &self,
         run: &mut LoadingRun,
@@ -484,8 +488,9 @@ fn slack_at(
     Slack { gap, tension: gap.max(TOLERANCE * greatest), excess: gap, rate: TOLERANCE }
 }
 
-/// What a pressure on nodes out of contact, and a gap of nodes in it at some positions, adds to sums over all nodes: of gaps, of plastic
-/// depths, and of these times the hardness. By reciprocity it is what right-hand sides of the same sums answer.
+/// What a pressure on nodes out of contact, and a gap of nodes in it at some positions, adds to sums over all nodes: of
+/// gaps, of plastic depths, and of these times the hardness. By reciprocity it is what right-hand sides of the same
+/// sums answer.
 fn plastic_sums(
     run: &LoadingRun,
     plastic: &Plastic,

@@ -4,8 +4,8 @@ use crate::contact::ContactSequence;
 use crate::updater::{JOINED, Left, LinearUpdater, Schur, WindowFactor};
 use crate::{Error, Problem, UpdaterError};
 
-/// The windows in which a factor grew, and the nodes that left it. Made again by the same steps it has the same numbers, bit for bit; in other blocks it
-/// would round otherwise.
+/// The windows in which a factor grew, and the nodes that left it. Made again by the same steps it has the same
+/// numbers, bit for bit; in other blocks it would round otherwise.
 ///
 /// It takes a few whole numbers for each node in contact.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,8 +18,8 @@ pub(crate) struct FactorLog {
     pub(crate) windows: Vec<[usize; 3]>,
     /// For each node that left how many windows came before, and its place in the order of contact.
     pub(crate) left: Vec<[usize; 2]>,
-    /// For each window in which nodes yielded how many windows came before, and how many they were: those of them that had touched
-    /// before left at once, and others of the window joined.
+    /// For each window in which nodes yielded how many windows came before, and how many they were: those of them that
+    /// had touched before left at once, and others of the window joined.
     pub(crate) yielded: Vec<[usize; 2]>,
 }
 
@@ -104,13 +104,13 @@ impl FactorLog {
         untouched.map(|(_, &node)| node).collect()
     }
 
-    /// Makes the factor of a contact with an updater that has no node. Returns false, and nothing has happened, if `budget` bytes are not
-    /// enough for that.
+    /// Makes the factor of a contact with an updater that has no node. Returns false, and nothing has happened, if
+    /// `budget` bytes are not enough for that.
     ///
     /// # Errors
     ///
-    /// [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`UpdaterError::UpdaterMismatch`] for a log of another contact, and
-    /// those of the updater.
+    /// [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`UpdaterError::UpdaterMismatch`] for a log of another
+    /// contact, and those of the updater.
     pub(super) fn replay(
         &self,
         updater: &mut dyn LinearUpdater,
@@ -280,7 +280,8 @@ mod tests {
             replayed(&log, order, usize::MAX).is_err()
         };
         assert!(!refused(&|_| {}, &[0, 4, 2, 6]));
-        // Another order, fewer nodes, one outside the grid, one twice, a place that is none, an event twice, fewer nodes than windows say.
+        // Another order, fewer nodes, one outside the grid, one twice, a place that is none, an event twice, fewer
+        // nodes than windows say.
         assert!(refused(&|_| {}, &[0, 4, 6, 2]));
         assert!(refused(&|_| {}, &[0, 4, 2]));
         assert!(refused(&|log| log.watched[0] = 9, &[0, 4, 2, 6]));

@@ -63,9 +63,9 @@ impl LoadingPath {
         map
     }
 
-    /// Pressure, gap, displacement, maps and plastic depth of the present state, without contact before the first: one backward
-    /// substitution with the factor at hand, and one convolution. No pressure is negative: tension within the error of a state, as on a
-    /// node that has just touched, is zero.
+    /// Pressure, gap, displacement, maps and plastic depth of the present state, without contact before the first: one
+    /// backward substitution with the factor at hand, and one convolution. No pressure is negative: tension within the
+    /// error of a state, as on a node that has just touched, is zero.
     ///
     /// # Errors
     ///
@@ -78,10 +78,10 @@ impl LoadingPath {
     /// The same at any state of this path up to the present one, or at a state between two events
     /// that [`History`](super::History) has read.
     ///
-    /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node
-    /// that *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
-    /// contact. Without a factor a state costs a solution; so does one before the last node that *yielded*, in as much memory again as
-    /// iterations take.
+    /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node that
+    /// *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in contact.
+    /// Without a factor a state costs a solution; so does one before the last node that *yielded*, in as much memory
+    /// again as iterations take.
     ///
     /// # Errors
     ///
@@ -117,11 +117,11 @@ impl LoadingPath {
         })
     }
 
-    /// The surface with the plastic depth of the present state taken off, from its highest node before: none of its heights \[m\]
-    /// is positive.
+    /// The surface with the plastic depth of the present state taken off, from its highest node before: none of its
+    /// heights \[m\] is positive.
     ///
-    /// Its elastic contact is that of unloading from this state, and of loading again up to it (flow rule of perfect plasticity; gaps
-    /// only close on loading). Beyond, the path of the first surface goes on.
+    /// Its elastic contact is that of unloading from this state, and of loading again up to it (flow rule of perfect
+    /// plasticity; gaps only close on loading). Beyond, the path of the first surface goes on.
     ///
     /// # Errors
     ///
@@ -160,7 +160,8 @@ impl LoadingPath {
         Ok(self.solved_at(state)?.map(without_tension))
     }
 
-    /// The pressure of the present state as it was solved for: gaps in contact are closed under it, and not where tension is left out.
+    /// The pressure of the present state as it was solved for: gaps in contact are closed under it, and not where
+    /// tension is left out.
     fn solved(&mut self) -> Result<DMatrix<f64>, Error> {
         let Some(state) = self.state else {
             return Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny()));
@@ -255,9 +256,9 @@ impl LoadingPath {
         })
     }
 
-    /// `Ok` if the present state fulfils the conditions of contact as well as the solution of this path can: load, pressures and
-    /// gaps are right to 10⁻⁶, and to 10⁻⁴ where the approach of its event is an estimate. An exact path is right to some 10⁻¹²,
-    /// so that what is refused is no rounding.
+    /// `Ok` if the present state fulfils the conditions of contact as well as the solution of this path can: load,
+    /// pressures and gaps are right to 10⁻⁶, and to 10⁻⁴ where the approach of its event is an estimate. An exact path
+    /// is right to some 10⁻¹², so that what is refused is no rounding.
     ///
     /// # Errors
     ///
@@ -340,8 +341,8 @@ mod tests {
         Ok(())
     }
 
-    /// Every state of the path is one; what is a state in number only is none: too little load on both nodes, an approach at
-    /// which a node beside them would overlap, an approach that is no number.
+    /// Every state of the path is one; what is a state in number only is none: too little load on both nodes, an
+    /// approach at which a node beside them would overlap, an approach that is no number.
     #[test]
     fn what_is_no_state_of_contact_is_refused() -> Result<(), Error> {
         let (mut path, states) = path()?;

@@ -254,8 +254,8 @@ mod tests {
         }
     }
 
-    /// Nodes 0 and 2 carry 3/4 and 1/2 at the approach 3, and 1/4 more for each metre: node 1 sinks by 5/4 and 1/2, node 3
-    /// by 1/2 and 1/4.
+    /// Nodes 0 and 2 carry 3/4 and 1/2 at the approach 3, and 1/4 more for each metre: node 1 sinks by 5/4 and 1/2,
+    /// node 3 by 1/2 and 1/4.
     #[test]
     fn gaps_are_lines() -> Result<(), Error> {
         let run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;

@@ -70,8 +70,9 @@ impl History {
         &self.states
     }
 
-    /// The same states, of a body of which this is known. That of a record knows it. Conductance, slip and creep are refused where it
-    /// has layers of which their theories do not hold; of states alone, of which nothing is known, they are as on a half-space.
+    /// The same states, of a body of which this is known. That of a record knows it. Conductance, slip and creep are
+    /// refused where it has layers of which their theories do not hold; of states alone, of which nothing is known,
+    /// they are as on a half-space.
     #[must_use]
     pub fn on(mut self, layering: Layering) -> Self {
         self.layering = layering;
@@ -104,8 +105,8 @@ impl History {
         }
     }
 
-    /// The path that a grid would have had with these targets as limits: its states up to the first of them,
-    /// with the state there as its last, and why it ends. Of a path that has passed none of them all states, and `None`:
+    /// The path that a grid would have had with these targets as limits: its states up to the first of them, with the
+    /// state there as its last, and why it ends. Of a path that has passed none of them all states, and `None`:
     /// [`LoadingBuilder::resume`](super::LoadingBuilder::resume) goes on from there.
     ///
     /// # Errors
@@ -281,8 +282,8 @@ mod tests {
         }
     }
 
-    /// Three states of 1, 2 and 4 of ten nodes, at loads of 1, 2 and 4, from which approach and mean gap change by 1/2 and
-    /// 1/4 for each newton.
+    /// Three states of 1, 2 and 4 of ten nodes, at loads of 1, 2 and 4, from which approach and mean gap change by 1/2
+    /// and 1/4 for each newton.
     fn history() -> History {
         let state = |nodes: usize| {
             let load = nodes as f64;

@@ -10,8 +10,8 @@ use crate::{Error, Grid};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum LoadingEnd {
-    /// All nodes are in contact: from here on everything is linear in the load. With a hardness only if that of the nodes that have
-    /// not yielded is infinite.
+    /// All nodes are in contact: from here on everything is linear in the load. With a hardness only if that of the
+    /// nodes that have not yielded is infinite.
     FullContact,
     /// All nodes have yielded: the load is the hardness times the nominal area, and cannot grow.
     FullyPlastic,
@@ -116,8 +116,8 @@ impl Limits {
         if self.load == f64::INFINITY { Ok(()) } else { hardness.check(self.load, grid) }
     }
 
-    /// `Ok` if a path that has got to a state has not passed any of the limits. It may be at one already, unless it is to
-    /// go on.
+    /// `Ok` if a path that has got to a state has not passed any of the limits. It may be at one already, unless it is
+    /// to go on.
     ///
     /// # Errors
     ///
@@ -179,8 +179,9 @@ impl Limits {
         self.nodes.min(self.area_nodes)
     }
 
-    /// About how many of the `nodes` of the grid are in contact at the end, as far as a state tells: rather too many. Contact grows no
-    /// faster than the load, and the load by no greater part of itself for each step of the approach, or of the mean gap, than now.
+    /// About how many of the `nodes` of the grid are in contact at the end, as far as a state tells: rather too many.
+    /// Contact grows no faster than the load, and the load by no greater part of itself for each step of the approach,
+    /// or of the mean gap, than now.
     pub(super) fn expected_nodes(&self, nodes: usize, state: Option<ContactState>) -> usize {
         let most = self.most_nodes().min(nodes);
         let Some(state) = state.filter(|state| state.load > 0.0) else {
@@ -350,7 +351,8 @@ mod tests {
         Ok(())
     }
 
-    /// Two nodes of twenty under a load of 4, at an approach of 1 with a stiffness of 4, and at a mean gap of 1 with one of 2.
+    /// Two nodes of twenty under a load of 4, at an approach of 1 with a stiffness of 4, and at a mean gap of 1 with
+    /// one of 2.
     #[test]
     fn the_end_is_known_or_bounded() -> Result<(), Error> {
         use ContactTarget::{Approach, AreaFraction, Load, MeanGap};

@@ -8,11 +8,12 @@
 //! * In *windows*, if contact only ever grows: a δⱼ computed earlier is then a lower bound, and only the nodes
 //!   with the smallest ones need be watched until the *horizon*, the smallest bound among all others, is
 //!   reached. If bounds may fail, a window is checked at its end.
-//! * One at a time, nodes that *leave* among them, if nothing is known of the kernel. Without a factor, and with a hundred nodes in contact
-//!   or more, in windows as well: each ends before a node leaves, and is checked at its end and at each event in it.
+//! * One at a time, nodes that *leave* among them, if nothing is known of the kernel. Without a factor, and with a
+//!   hundred nodes in contact or more, in windows as well: each ends before a node leaves, and is checked at its end
+//!   and at each event in it.
 //!
-//! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Exact` then watches nodes of both kinds, and checks a
-//! window in which nodes yield at its end before the updater learns of it.
+//! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Exact` then watches nodes of both kinds,
+//! and checks a window in which nodes yield at its end before the updater learns of it.
 //!
 //! # How a window is made
 //!
@@ -30,43 +31,46 @@
 //!
 //! # Without a factor
 //!
-//! With [`ConjugateGradient`](crate::updater::ConjugateGradient), and once the default updater costs more than iterations, Schur
-//! complements are nearly exact. `Estimated` then takes the place of `Exact`: it plays a `Window` of such a complement, solves at
-//! its end, plays fewer events where that contradicts them, corrects it by that solution, plays the same events a second time, and settles neighbours that are still too close by a
-//! solution of their own (`docs/theory.md`, section 11).
+//! With [`ConjugateGradient`](crate::updater::ConjugateGradient), and once the default updater costs more than
+//! iterations, Schur complements are nearly exact. `Estimated` then takes the place of `Exact`: it plays a `Window` of
+//! such a complement, solves at its end, plays fewer events where that contradicts them, corrects it by that solution,
+//! plays the same events a second time, and settles neighbours that are still too close by a solution of their own
+//! (`docs/theory.md`, section 11).
 //!
-//! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach. On a periodic
-//!   half-space it is the approach in the gauge that is computed with,
-//!   which contains the mean displacement under the load. Nodes that touch together as a window begins join in the order of
-//!   their indices at one approach, and are ties as far as the solutions there tell them apart: 10⁻⁸ of that
-//!   approach over the rate at which their gaps close.
-//! * *The ends of windows*, some fifty events apart, are certified: they are solutions of the contact problem, checked for
-//!   tension and overlap. The end of a window also shows how far its Schur complement was from exact. On a periodic strip of a
-//!   few rows, where distant contacts matter as much as near ones, windows become shorter, down to one event. A window whose
-//!   end, or a solution in it, contradicts what was expected is taken back.
+//! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach. On a
+//!   periodic half-space it is the approach in the gauge that is computed with, which contains the mean displacement
+//!   under the load. Nodes that touch together as a window begins join in the order of their indices at one approach,
+//!   and are ties as far as the solutions there tell them apart: 10⁻⁸ of that approach over the rate at which their
+//!   gaps close.
+//! * *The ends of windows*, some fifty events apart, are certified: they are solutions of the contact problem, checked
+//!   for tension and overlap. The end of a window also shows how far its Schur complement was from exact. On a periodic
+//!   strip of a few rows, where distant contacts matter as much as near ones, windows become shorter, down to one
+//!   event. A window whose end, or a solution in it, contradicts what was expected is taken back.
 //! * *Between them* states are estimated: [`LoadingState::approach_error`] says how far the approach of an event may be
 //!   off; on a periodic half-space this is the approach of the mean planes, as it is reported. Of 196 608 errors
-//!   measured on 128 × 128 nodes none exceeds its estimate. On strips of four rows and on incompressible sheets up to three cells
-//!   thick one to four in a thousand do, 2.2 times at worst. On square cells loads are wrong by some 10⁻⁷ as a rule and by 10⁻⁵ at
-//!   worst (on uncorrelated heights 3·10⁻⁵), interfacial stiffnesses by 2·10⁻⁶ and 2·10⁻⁴, mean gaps by 10⁻⁶ of the
-//!   initial one. On cells 10 times as long as wide loads of a periodic half-space are off by up to 10⁻⁴, and longer ones
-//!   [are refused](crate::updater::ConjugateGradient::MAX_ASPECT); on a free half-space cells may be of any shape.
+//!   measured on 128 × 128 nodes none exceeds its estimate. On strips of four rows and on incompressible sheets up to
+//!   three cells thick one to four in a thousand do, 2.2 times at worst. On square cells loads are wrong by some 10⁻⁷
+//!   as a rule and by 10⁻⁵ at worst (on uncorrelated heights 3·10⁻⁵), interfacial stiffnesses by 2·10⁻⁶ and 2·10⁻⁴,
+//!   mean gaps by 10⁻⁶ of the initial one. On cells 10 times as long as wide loads of a periodic half-space are off by
+//!   up to 10⁻⁴, and longer ones [are refused](crate::updater::ConjugateGradient::MAX_ASPECT); on a free half-space
+//!   cells may be of any shape.
 //!
 //! With a hardness it does the same with events of both kinds, once a node may yield: its matrices are those of
-//! [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), from local solutions for nodes that may touch and for nodes
-//! that may yield. All that is said above holds for its states; what nodes that touch and nodes that yield make of the error of a matrix may
-//! cancel at a window's end, so that estimates are ten times as great, a fiftieth of the mean spacing of events at least. Nodes that yield
-//! together get the approach at which their plastic depths begin, by the solution behind them. Even so estimates are no bounds where few nodes
-//! are elastic: with H = 0.05 E\* h′ on 256 × 256 nodes, to the yield of the last, 217 of 131 072 approaches were off by more, 2.3 times at
+//! [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), from local solutions for nodes that may
+//! touch and for nodes that may yield. All that is said above holds for its states; what nodes that touch and nodes
+//! that yield make of the error of a matrix may cancel at a window's end, so that estimates are ten times as great, a
+//! fiftieth of the mean spacing of events at least. Nodes that yield together get the approach at which their plastic
+//! depths begin, by the solution behind them. Even so estimates are no bounds where few nodes are elastic: with H =
+//! 0.05 E\* h′ on 256 × 256 nodes, to the yield of the last, 217 of 131 072 approaches were off by more, 2.3 times at
 //! worst; all events were those of the factor, 18 of them in another order within ties.
 //!
 //! [`ContactRule::ApproximateOrder`] does not settle neighbours that are too close, for speed.
 //!
 //! # Ties
 //!
-//! Nodes that touch at once join one by one, in the order of their indices, with a factor and without: so do the nodes that symmetry
-//! maps to each other. At once are, with an exact updater, gaps below 10⁻¹³ of the approach when the first of them closes, and events
-//! within 10⁻⁹ of the approach with another one.
+//! Nodes that touch at once join one by one, in the order of their indices, with a factor and without: so do the nodes
+//! that symmetry maps to each other. At once are, with an exact updater, gaps below 10⁻¹³ of the approach when the
+//! first of them closes, and events within 10⁻⁹ of the approach with another one.
 
 mod builder;
 mod contradiction;

@@ -18,11 +18,11 @@ use crate::contact::ContactTarget;
 use crate::updater::LinearUpdater;
 use crate::{Error, Grid, Problem};
 
-/// A loading path under way, whatever solves on its contact: what a [`LoadingSolver`](super::LoadingSolver) is but for the type of its
-/// updater.
+/// A loading path under way, whatever solves on its contact: what a [`LoadingSolver`](super::LoadingSolver) is but for
+/// the type of its updater.
 ///
-/// What reads fields of a path, or goes on with it, takes one of these; a [`LoadingSolver`](super::LoadingSolver) is one where it is borrowed,
-/// and becomes one by [`into_path`](super::LoadingSolver::into_path).
+/// What reads fields of a path, or goes on with it, takes one of these; a [`LoadingSolver`](super::LoadingSolver) is
+/// one where it is borrowed, and becomes one by [`into_path`](super::LoadingSolver::into_path).
 #[derive(Debug)]
 pub struct LoadingPath {
     pub(super) run: LoadingRun,
@@ -52,8 +52,8 @@ pub(super) enum Procedure {
 }
 
 impl Procedure {
-    /// Goes on with a factor that grew so; with none if there is nothing in the log. The solution at hand may be one of the factor before
-    /// nodes yielded.
+    /// Goes on with a factor that grew so; with none if there is nothing in the log. The solution at hand may be one of
+    /// the factor before nodes yielded.
     pub(super) fn follow_on(&mut self, log: FactorLog, is_behind: bool) {
         match self {
             Self::Windows(exact, _) => exact.follow_on(log, is_behind),
@@ -260,7 +260,8 @@ impl LoadingPath {
         }
     }
 
-    /// Number of elastic nodes in contact when the factor of [`Handover`](crate::updater::Handover) was given up, `None` while it is in use.
+    /// Number of elastic nodes in contact when the factor of [`Handover`](crate::updater::Handover) was given up,
+    /// `None` while it is in use.
     #[must_use]
     pub fn handed_over_at(&self) -> Option<usize> {
         self.handed_over_at
@@ -315,8 +316,8 @@ impl LoadingPath {
         self.run.queue.len()
     }
 
-    /// Bytes held at present, with the nodes in contact of all states computed so far: those of a window are ahead of the
-    /// present state.
+    /// Bytes held at present, with the nodes in contact of all states computed so far: those of a window are ahead of
+    /// the present state.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let run = &self.run;

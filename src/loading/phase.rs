@@ -26,8 +26,8 @@ pub(super) enum Phase {
 }
 
 impl Phase {
-    /// Begins with an updater that has no node in contact: with iterations where it is one of these. `hand_over` says whether it may end,
-    /// if that is not for the updater to say.
+    /// Begins with an updater that has no node in contact: with iterations where it is one of these. `hand_over` says
+    /// whether it may end, if that is not for the updater to say.
     pub(super) fn new(updater: impl LinearUpdater, hand_over: Option<bool>) -> Self {
         let updater: Box<dyn LinearUpdater> = Box::new(updater);
         let mut own: &dyn Any = &*updater;
@@ -41,7 +41,8 @@ impl Phase {
         Self::Factor { updater, may_end }
     }
 
-    /// Gives up the factor if it does not serve any more on a path to `end` nodes in contact. Returns whether it has just done so.
+    /// Gives up the factor if it does not serve any more on a path to `end` nodes in contact. Returns whether it has
+    /// just done so.
     pub(super) fn hand_over(&mut self, run: &mut LoadingRun, end: usize) -> Result<bool, Error> {
         let (problem, contact) = (&run.problem, &run.contact);
         let count = contact.len();
@@ -64,14 +65,15 @@ impl Phase {
         {
             iterations.take_over(problem, contact, approach, &solution)?;
         }
-        // Where the window of a factor was checked there is a solution of it: iterations begin with their own, whether or not.
+        // Where the window of a factor was checked there is a solution of it: iterations begin with their own, whether
+        // or not.
         run.field.forget();
         Ok(true)
     }
 
-    /// The iterations that take the place of a factor with `count` nodes, if that is one which may end: where the rest of a path to
-    /// `end` nodes in contact is cheaper with them and they can do, or where the factor leaves no room for one more window. Without
-    /// room for iterations it stays as long as it can.
+    /// The iterations that take the place of a factor with `count` nodes, if that is one which may end: where the rest
+    /// of a path to `end` nodes in contact is cheaper with them and they can do, or where the factor leaves no room for
+    /// one more window. Without room for iterations it stays as long as it can.
     fn successor(&self, run: &LoadingRun, count: usize, end: usize) -> Option<Box<dyn Iterations>> {
         let Self::Factor { updater, may_end: true } = self else {
             return None;
@@ -92,8 +94,8 @@ impl Phase {
         (has_room || count == 0).then_some(iterations)
     }
 
-    /// The number of nodes in contact at which a factor is looked at again, wherever windows begin: where it is given up on the way to
-    /// `end` of them, if it is.
+    /// The number of nodes in contact at which a factor is looked at again, wherever windows begin: where it is given
+    /// up on the way to `end` of them, if it is.
     pub(super) fn stop(&self, run: &LoadingRun, end: usize) -> usize {
         let nodes = run.problem.grid().nodes();
         let last = greatest_factor(nodes, end);
@@ -112,8 +114,8 @@ impl Phase {
         }
     }
 
-    /// Lets a single node join, that touches at a time behind the present approach. With a factor `window` then says what it adds to
-    /// the stiffness; iterations learn of it by their next solution.
+    /// Lets a single node join, that touches at a time behind the present approach. With a factor `window` then says
+    /// what it adds to the stiffness; iterations learn of it by their next solution.
     pub(super) fn admit(
         &mut self,
         run: &mut LoadingRun,
@@ -135,8 +137,8 @@ impl Phase {
         }
     }
 
-    /// Before the first node is in contact: tells the updater how many bytes are left for it, or checks that iterations have
-    /// room.
+    /// Before the first node is in contact: tells the updater how many bytes are left for it, or checks that iterations
+    /// have room.
     pub(super) fn make_room(&mut self, run: &LoadingRun) -> Result<(), Error> {
         match self {
             Self::Factor { updater, .. } => updater
@@ -230,7 +232,8 @@ impl Phase {
         Ok(true)
     }
 
-    /// Solves on the contact after `step` events at an approach, and returns it. The solution that the path goes on with is left as it is.
+    /// Solves on the contact after `step` events at an approach, and returns it. The solution that the path goes on
+    /// with is left as it is.
     pub(super) fn solve_at(
         &mut self,
         run: &LoadingRun,
@@ -327,8 +330,8 @@ mod tests {
         Ok(run)
     }
 
-    /// Bytes of a factor of so many nodes and one more window: of 64 nodes more in contact and 64 watched, and of their Schur
-    /// complement and its factor, 1024 · 64.
+    /// Bytes of a factor of so many nodes and one more window: of 64 nodes more in contact and 64 watched, and of their
+    /// Schur complement and its factor, 1024 · 64.
     fn with_window(contact: usize) -> usize {
         RecursiveCholesky::new().bytes(contact + 64, 64) + 1024 * 64
     }
@@ -347,8 +350,8 @@ mod tests {
                 let run = flat(kernel, with_window(2000) - less)?;
                 assert_eq!(has_successor(&run, 2000), is_given_up);
             }
-            // 480 bytes a node and 1000 a node in contact are more than that: nothing else has room, but before first touch there
-            // is nothing to stay with.
+            // 480 bytes a node and 1000 a node in contact are more than that: nothing else has room, but before first
+            // touch there is nothing to stay with.
             for count in [300, 0] {
                 let run = flat(kernel, with_window(count) - 1)?;
                 assert_eq!(has_successor(&run, count), count == 0);
@@ -368,7 +371,8 @@ mod tests {
         Ok(())
     }
 
-    /// Paths that end soon behind the place where events cost the same keep their factor, and have no window that ends there.
+    /// Paths that end soon behind the place where events cost the same keep their factor, and have no window that ends
+    /// there.
     #[test]
     fn a_factor_is_given_up_for_what_is_left() -> Result<(), Error> {
         let square = Boussinesq::new(Grid::square(128, 1.0)?, 1.0)?;
@@ -393,8 +397,8 @@ mod tests {
         Ok((run, phase))
     }
 
-    /// Where one more window does not fit iterations go on from the solution of the factor, if there is room for them: here for six
-    /// nodes and two in contact.
+    /// Where one more window does not fit iterations go on from the solution of the factor, if there is room for them:
+    /// here for six nodes and two in contact.
     #[test]
     fn a_factor_is_given_up_for_iterations() -> Result<(), Error> {
         let iterations = 6 * 480 + 2 * 1000;
@@ -490,7 +494,8 @@ mod tests {
         Ok(())
     }
 
-    /// Nodes that touch alone: with a factor they join it, and `1/4` is what the stiffness grows by; iterations find them in the contact.
+    /// Nodes that touch alone: with a factor they join it, and `1/4` is what the stiffness grows by; iterations find
+    /// them in the contact.
     #[test]
     fn single_nodes_are_admitted() -> Result<(), Error> {
         let (mut run, mut factor) = two_in_contact()?;

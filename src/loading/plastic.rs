@@ -8,7 +8,8 @@ use crate::{Boundary, Error, Grid, Problem};
 
 /// A path's hardness, and the nodes that have yielded.
 ///
-/// They carry their hardness, and are a load on the others: whose contact is elastic, with the initial gap g + C H of that load.
+/// They carry their hardness, and are a load on the others: whose contact is elastic, with the initial gap g + C H of
+/// that load.
 #[derive(Debug)]
 pub(super) struct Plastic {
     hardness: Arc<Hardness>,
@@ -157,8 +158,8 @@ impl Plastic {
         }
     }
 
-    /// The same when nodes have yielded in groups, one after the other, and the problem of the elastic ones: with the roundings of a path that
-    /// went through these groups.
+    /// The same when nodes have yielded in groups, one after the other, and the problem of the elastic ones: with the
+    /// roundings of a path that went through these groups.
     pub(super) fn after<'a>(
         &self,
         groups: impl Iterator<Item = &'a [usize]>,

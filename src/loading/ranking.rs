@@ -35,8 +35,8 @@ pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, E
     Ok(first)
 }
 
-/// Looks at all gaps at the present approach, and ranks them by a time. With `allowed`, the overlap that a solution may leave, more than
-/// that and than rounding is an error.
+/// Looks at all gaps at the present approach, and ranks them by a time. With `allowed`, the overlap that a solution may
+/// leave, more than that and than rounding is an error.
 pub(super) fn fill(
     run: &mut LoadingRun,
     ranking: &mut Ranking,
@@ -48,8 +48,8 @@ pub(super) fn fill(
     run.survey(allowed, |node, line| ranking.push((time(&line), node)))
 }
 
-/// Ranks the nodes in contact that would yield before the last of the ranked ones touches. Returns when the first of them would, and
-/// when the first of the others.
+/// Ranks the nodes in contact that would yield before the last of the ranked ones touches. Returns when the first of
+/// them would, and when the first of the others.
 pub(super) fn rank_yields(run: &LoadingRun, ranking: &mut Ranking) -> [f64; 2] {
     let (mut first, mut beyond) = (f64::INFINITY, f64::INFINITY);
     let Some(plastic) = &run.plastic else {
@@ -73,8 +73,8 @@ pub(super) fn rank_yields(run: &LoadingRun, ranking: &mut Ranking) -> [f64; 2] {
     [first, beyond]
 }
 
-/// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns the
-/// rates.
+/// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns
+/// the rates.
 pub(super) fn survey(
     run: &mut LoadingRun,
     plastic: &Plastic,
@@ -175,8 +175,8 @@ mod tests {
         Ok(ranking)
     }
 
-    /// Node 1 has sunk by 2 and sinks by 3/4 for each metre, node 3 by 1 and 1/4, and node 4 not at all: gaps of 4, 8 and 1 over
-    /// what is left of 1. They tie from when on their gaps are 10⁻¹³ of the approach.
+    /// Node 1 has sunk by 2 and sinks by 3/4 for each metre, node 3 by 1 and 1/4, and node 4 not at all: gaps of 4, 8
+    /// and 1 over what is left of 1. They tie from when on their gaps are 10⁻¹³ of the approach.
     #[test]
     fn nodes_are_ranked_by_their_times() -> Result<(), Error> {
         let ranking = ranked(0.25)?;

@@ -53,7 +53,8 @@ impl Releases {
         self.log.push(release);
     }
 
-    /// Says that the updater does not hold the contact of any state up to the event number `step`; returns from which on it did.
+    /// Says that the updater does not hold the contact of any state up to the event number `step`; returns from which
+    /// on it did.
     pub(super) fn forget(&mut self, step: usize) -> usize {
         std::mem::replace(&mut self.prefix_since, step + 1)
     }
@@ -75,7 +76,8 @@ impl Releases {
         Some((last.position, last.node))
     }
 
-    /// Puts the nodes that had yielded after `step` events back among those of the contact that had not, in the order of joining.
+    /// Puts the nodes that had yielded after `step` events back among those of the contact that had not, in the order
+    /// of joining.
     pub(super) fn with_yielded(&self, mut elastic: Vec<usize>, step: usize) -> Vec<usize> {
         let log = self.log.iter().rev().filter(|release| release.step <= step);
         for release in log.filter(|release| release.has_yielded) {

@@ -14,7 +14,8 @@ impl LoadingPath {
     ///
     /// # Errors
     ///
-    /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate to keep them.
+    /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate
+    /// to keep them.
     pub fn run(&mut self) -> Result<History, Error> {
         self.by_ref().collect()
     }
@@ -86,7 +87,8 @@ pub(crate) struct Replayed {
 }
 
 /// The contact after the states of a path, which are checked to be in an order that a path may have; `left` is told of
-/// each node that leaves or yields: the number of the event, which it is, and the node's place among those that have done neither.
+/// each node that leaves or yields: the number of the event, which it is, and the node's place among those that have
+/// done neither.
 pub(crate) fn replay(
     grid: &Grid,
     history: &History,

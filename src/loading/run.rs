@@ -188,7 +188,8 @@ impl LoadingRun {
         Mark { count: self.contact.len(), scalars: self.scalars }
     }
 
-    /// Takes a step back, or the nodes of its last events if the mark says so. Whoever solves on the contact goes back by `cut`.
+    /// Takes a step back, or the nodes of its last events if the mark says so. Whoever solves on the contact goes back
+    /// by `cut`.
     pub(super) fn roll_back(
         &mut self,
         mark: &Mark,
@@ -246,8 +247,8 @@ impl LoadingRun {
     }
 
     /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n rounding errors of
-    /// `Σⱼ |Cᵢⱼ pⱼ|` at most, which C(0, 0) Σ |p| bounds, for no coefficient is greater; and so is that of the displacements. Those
-    /// under nodes that have yielded are part of the initial gap.
+    /// `Σⱼ |Cᵢⱼ pⱼ|` at most, which C(0, 0) Σ |p| bounds, for no coefficient is greater; and so is that of the
+    /// displacements. Those under nodes that have yielded are part of the initial gap.
     pub(super) fn check_closed(
         &self,
         problem: &Problem,
@@ -281,8 +282,8 @@ impl LoadingRun {
         Ok(())
     }
 
-    /// Visits all gaps out of contact, and takes the mean gap from them. With `allowed`, the overlap that a solution may leave, more
-    /// than that and than rounding is an error.
+    /// Visits all gaps out of contact, and takes the mean gap from them. With `allowed`, the overlap that a solution
+    /// may leave, more than that and than rounding is an error.
     pub(super) fn survey(
         &mut self,
         allowed: Option<f64>,
@@ -354,8 +355,8 @@ impl LoadingRun {
             .and_then(|()| window.touched_factor())
             .and_then(|factor| updater.join(&self.problem, &self.contact, &factor));
         joined.map_err(|error| {
-            // The updater may have taken them in: both go back, for the fields of the states up to there. One that cannot
-            // says so when it is asked for them.
+            // The updater may have taken them in: both go back, for the fields of the states up to there. One that
+            // cannot says so when it is asked for them.
             let _ = self.roll_back(&mark, |problem, contact| updater.truncate(problem, contact));
             self.memory.in_all(error)
         })
@@ -397,8 +398,8 @@ impl LoadingRun {
         self.enqueue_at(&scalars, (step, event, node), contact_nodes, 0.0)
     }
 
-    /// Puts a state into the queue, after something happened to a node there; the approach that it reports may be off by
-    /// `error`.
+    /// Puts a state into the queue, after something happened to a node there; the approach that it reports may be off
+    /// by `error`.
     pub(super) fn enqueue_at(
         &mut self,
         scalars: &PathScalars,
@@ -452,8 +453,8 @@ impl LoadingRun {
         }
     }
 
-    /// The first of so many nodes in contact whose pressure at an approach is not a number, or below zero by more than rounding and
-    /// what goes with an overlap that the solution may leave.
+    /// The first of so many nodes in contact whose pressure at an approach is not a number, or below zero by more than
+    /// rounding and what goes with an overlap that the solution may leave.
     pub(super) fn negative_pressure(
         &self,
         count: usize,

@@ -123,9 +123,9 @@ impl PathScalars {
         self.approach = approach;
     }
 
-    /// Adds to load, mean gap, energy and plastic sums what they lack at the end of a window, where `walked` got there from this one's
-    /// window and `end` is exact: by the way of the load, the way of the rest, and those of both plastic sums. Of the energy, what comes in
-    /// lacks by the square of the way, and plastic work takes from it.
+    /// Adds to load, mean gap, energy and plastic sums what they lack at the end of a window, where `walked` got there
+    /// from this one's window and `end` is exact: by the way of the load, the way of the rest, and those of both
+    /// plastic sums. Of the energy, what comes in lacks by the square of the way, and plastic work takes from it.
     pub(super) fn pin(
         &mut self,
         walked: &Self,
@@ -151,8 +151,8 @@ impl PathScalars {
         [self.approach, plastic.depth, plastic.work]
     }
 
-    /// What the reported approach may be off by, if the one in the gauge of the kernel is by `approach`, and the load at a
-    /// given one by `load`.
+    /// What the reported approach may be off by, if the one in the gauge of the kernel is by `approach`, and the load
+    /// at a given one by `load`.
     pub(super) fn reported_error(&self, approach: f64, load: f64) -> f64 {
         let stiffness = self.grid.cell_area() * self.unit_stiffness;
         let open = 1.0 - self.gauge.displacement(stiffness);
@@ -187,8 +187,8 @@ impl PathScalars {
         }
     }
 
-    /// Takes over the rates behind an event, with `elastic` and `yielded` nodes in contact; the sum of the pressures of the latter
-    /// is the load on a plateau, where no node is elastic.
+    /// Takes over the rates behind an event, with `elastic` and `yielded` nodes in contact; the sum of the pressures of
+    /// the latter is the load on a plateau, where no node is elastic.
     pub(super) fn change_rates(&mut self, rates: Rates, [elastic, yielded]: [usize; 2], sum: f64) {
         self.unit_stiffness = rates.unit_stiffness;
         self.closing = rates.closing / self.grid.nodes() as f64;

@@ -90,7 +90,8 @@ impl Snapshot {
         let cell_area = run.problem.grid().cell_area();
         let load = cell_area * self.pressure.iter().sum::<f64>();
         let scale = load.abs().max(self.stiffness * self.approach);
-        // At first touch, and where nodes have yielded under next to nothing, all that is left is what contact is closed to.
+        // At first touch, and where nodes have yielded under next to nothing, all that is left is what contact is
+        // closed to.
         let rounding = self.rounding(run);
         // NaN is refused as well.
         let same_load = (load - state.contact.load).abs() <= (allowed * scale).max(rounding);
@@ -132,7 +133,8 @@ impl Snapshot {
         TOLERANCE * self.stiffness * self.lengths(run)
     }
 
-    /// `Ok` if the gaps that a certificate of the state was made of are closed in contact, and not negative elsewhere: [`recognise`](Self::recognise) looks at the node that touches next alone.
+    /// `Ok` if the gaps that a certificate of the state was made of are closed in contact, and not negative elsewhere:
+    /// [`recognise`](Self::recognise) looks at the node that touches next alone.
     pub(super) fn check_gaps(
         &self,
         run: &LoadingRun,
@@ -168,9 +170,9 @@ impl Snapshot {
         allowed(state) * (run.problem.greatest_gap() + self.approach.abs())
     }
 
-    /// Greatest error of pressures where gaps in contact are closed to a tolerance τ of the approach only:
-    /// `|C⁻¹r| ≤ √n τ δ / λ`, with the least eigenvalue λ. On long cells in a large gauge that is far more than τ of the
-    /// pressure. 0 with a factor, and where λ is not known.
+    /// Greatest error of pressures where gaps in contact are closed to a tolerance τ of the approach only: `|C⁻¹r| ≤ √n
+    /// τ δ / λ`, with the least eigenvalue λ. On long cells in a large gauge that is far more than τ of the pressure. 0
+    /// with a factor, and where λ is not known.
     fn pressure_error(&self, run: &LoadingRun, tolerance: f64) -> f64 {
         let least = run.field.least_eigenvalue();
         if tolerance == 0.0 || least <= 0.0 {
@@ -225,8 +227,8 @@ mod tests {
     use crate::loading::test_chain;
     use crate::updater::Dense;
 
-    /// A snapshot of nodes in a row with these pressures, and whether it is that of a state under `load`; `contact` is what
-    /// the path has got to, which is at the first of its events or at the last.
+    /// A snapshot of nodes in a row with these pressures, and whether it is that of a state under `load`; `contact` is
+    /// what the path has got to, which is at the first of its events or at the last.
     struct Case<'a> {
         gaps: &'a [f64],
         contact: &'a [usize],
@@ -349,8 +351,8 @@ mod tests {
         Ok(())
     }
 
-    /// Gaps that are closed to a thousandth of the approach of 4 leave √2 · 4e-3 / 2 of the pressures of two nodes open:
-    /// waves from node to node have the least symbol, 4 − 2.
+    /// Gaps that are closed to a thousandth of the approach of 4 leave √2 · 4e-3 / 2 of the pressures of two nodes
+    /// open: waves from node to node have the least symbol, 4 − 2.
     #[test]
     fn tension_that_iterations_leave_is_none() -> Result<(), Error> {
         let refused = Some("least pressure in contact");

@@ -12,11 +12,11 @@ use crate::updater::{Handover, LinearUpdater};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
 ///
-/// A fused iterator: it yields one [`LoadingState`] for each node that touches (or yields, with a hardness, or leaves, with a
-/// kernel that lets nodes leave), from first touch (approach 0, load 0) to full contact or a limit. If the limit is a load,
-/// an approach or a mean gap, the last state is at exactly that limit. Afterwards, or after an error, it yields
-/// `None`, and [`end`](LoadingPath::end) says why; so it does if a user-defined updater has panicked and the panic was
-/// caught. Fields of the present state, the last one yielded, are computed on demand.
+/// A fused iterator: it yields one [`LoadingState`] for each node that touches (or yields, with a hardness, or leaves,
+/// with a kernel that lets nodes leave), from first touch (approach 0, load 0) to full contact or a limit. If the limit
+/// is a load, an approach or a mean gap, the last state is at exactly that limit. Afterwards, or after an error, it
+/// yields `None`, and [`end`](LoadingPath::end) says why; so it does if a user-defined updater has panicked and the
+/// panic was caught. Fields of the present state, the last one yielded, are computed on demand.
 ///
 /// ```
 /// use asperity::surface::{Amplitude, SelfAffine};
@@ -37,8 +37,8 @@ use crate::updater::{Handover, LinearUpdater};
 /// # }
 /// ```
 ///
-/// It is a thin shell: `U` says which [`LinearUpdater`] solves on the contact, and all else is that of the [`LoadingPath`] that it
-/// dereferences to, which is compiled once for all of them.
+/// It is a thin shell: `U` says which [`LinearUpdater`] solves on the contact, and all else is that of the
+/// [`LoadingPath`] that it dereferences to, which is compiled once for all of them.
 #[derive(Debug)]
 pub struct LoadingSolver<U = Handover> {
     path: LoadingPath,

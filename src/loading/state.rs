@@ -12,8 +12,8 @@ pub enum ContactEvent {
     /// The pressure of a node has fallen to zero, and it leaves the contact. Of the kernels of
     /// this crate stiff coats let it happen; see [`ContactGrowth`](crate::ContactGrowth).
     Release,
-    /// The pressure of a node has risen to its [hardness](super::LoadingBuilder::hardness), and it yields for good. It stays in
-    /// contact.
+    /// The pressure of a node has risen to its [hardness](super::LoadingBuilder::hardness), and it yields for good. It
+    /// stays in contact.
     Yield,
     /// Nothing: the path has reached the load, approach or mean gap at which it was to end.
     Limit,
@@ -21,8 +21,8 @@ pub enum ContactEvent {
 
 /// A state of a path: the instant of an event, with the event already done.
 ///
-/// The node that touches or leaves has no pressure at that instant; one that yields has its hardness, and no plastic depth yet. Load,
-/// approach, area and the other scalars are those of the contact: `state.contact.load`.
+/// The node that touches or leaves has no pressure at that instant; one that yields has its hardness, and no plastic
+/// depth yet. Load, approach, area and the other scalars are those of the contact: `state.contact.load`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -35,8 +35,8 @@ pub(super) struct Stepwise {
     has_begun: bool,
     /// All events of the factor so far.
     log: FactorLog,
-    /// The error of the state that the path goes on from, if that is an estimate and no solution has been without tension and overlap
-    /// since.
+    /// The error of the state that the path goes on from, if that is an estimate and no solution has been without
+    /// tension and overlap since.
     inherited: f64,
 }
 
@@ -245,7 +245,8 @@ mod tests {
         Upcoming { approach, error: 0.0, node, event: ContactEvent::Touch }
     }
 
-    /// What comes first at the approach 2 of these touches and of two nodes in contact, 3 and 5, with pressures and rates.
+    /// What comes first at the approach 2 of these touches and of two nodes in contact, 3 and 5, with pressures and
+    /// rates.
     fn first(
         touches: &[Upcoming],
         pressure: [f64; 2],
@@ -287,8 +288,8 @@ mod tests {
         Ok(())
     }
 
-    /// Node 0 touches at 0 and node 2 at the approach 1. Then node 1 between them, whose gap is 1.25 + 0.25 − 1 and closes at the
-    /// rate 1/2, touches at 2; gaps may be off by 10⁻⁴ of the approach, 1.
+    /// Node 0 touches at 0 and node 2 at the approach 1. Then node 1 between them, whose gap is 1.25 + 0.25 − 1 and
+    /// closes at the rate 1/2, touches at 2; gaps may be off by 10⁻⁴ of the approach, 1.
     #[test]
     fn events_come_one_at_a_time() -> Result<(), Error> {
         let mut run = test_chain::run(&[0.0, 1.25, 1.0, 9.0])?;

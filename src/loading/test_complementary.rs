@@ -1,5 +1,5 @@
-//! Dense solutions that tests of this module compare with. They use nothing of the repository but this file, so that the tests of the
-//! packed crate run.
+//! Dense solutions that tests of this module compare with. They use nothing of the repository but this file, so that
+//! the tests of the packed crate run.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,8 +9,9 @@ pub(super) fn from_first_touch(gaps: &[f64]) -> Vec<f64> {
     gaps.iter().map(|gap| gap - least).collect()
 }
 
-/// p ≥ 0, g + C p − δ ≥ 0, one of them zero at each node: projected Gauss–Seidel, which converges for every symmetric positive
-/// definite matrix (Cryer, SIAM J. Control 9 (1971) 385), until nothing changes by more than 10⁻¹⁴ of the greatest pressure.
+/// p ≥ 0, g + C p − δ ≥ 0, one of them zero at each node: projected Gauss–Seidel, which converges for every symmetric
+/// positive definite matrix (Cryer, SIAM J. Control 9 (1971) 385), until nothing changes by more than 10⁻¹⁴ of the
+/// greatest pressure.
 pub(super) fn complementary(matrix: &DMatrix<f64>, gaps: &[f64], approach: f64) -> DVector<f64> {
     let mut p = DVector::zeros(gaps.len());
     for _ in 0..100_000 {

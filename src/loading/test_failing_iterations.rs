@@ -1,4 +1,5 @@
-//! Iterations that work, but for one call: at the k-th call an error, a panic or a wrong answer, for every k of a small path.
+//! Iterations that work, but for one call: at the k-th call an error, a panic or a wrong answer, for every k of a small
+//! path.
 //!
 //! The oracle of what was yielded before is the same path without a fault, bit for bit. What is yielded after a wrong
 //! answer is compared with a solver of the linear complementarity problem that knows nothing of paths.
@@ -411,8 +412,8 @@ impl Small {
         }
     }
 
-    /// Errors of lengths and of pressures that a state may have: gaps are pinned to 10⁻⁸, and the sum of all moduli of C⁻¹ bounds
-    /// what a length changes of a pressure.
+    /// Errors of lengths and of pressures that a state may have: gaps are pinned to 10⁻⁸, and the sum of all moduli of
+    /// C⁻¹ bounds what a length changes of a pressure.
     fn allowed(&self, state: &LoadingState) -> [f64; 2] {
         let greatest = self.gaps.iter().copied().fold(0.0, f64::max);
         let length = 1e-8 * (self.own_approach(&state.contact) + greatest) + state.approach_error;
@@ -447,8 +448,8 @@ impl Small {
             .or_else(|| is_off("mean gap", found.mean_gap, open.mean(), length))
     }
 
-    /// After its end a path yields nothing and does not go on; what it has yielded it still knows. Returns for how many states
-    /// it answered.
+    /// After its end a path yields nothing and does not go on; what it has yielded it still knows. Returns for how many
+    /// states it answered.
     fn is_over(&self, path: &mut LoadingPath, states: &[LoadingState], context: &str) -> usize {
         assert_eq!(path.end(), Some(LoadingEnd::Failed), "{context}");
         for _ in 0..3 {
@@ -484,8 +485,8 @@ impl Small {
     }
 }
 
-/// The pressures from 0 to a hardness that leave gaps of the right sign, one node after the other (Gauss and Seidel) until none changes
-/// by more than 10⁻¹³ of the hardness.
+/// The pressures from 0 to a hardness that leave gaps of the right sign, one node after the other (Gauss and Seidel)
+/// until none changes by more than 10⁻¹³ of the hardness.
 fn bounded(matrix: &DMatrix<f64>, gaps: &[f64], hardness: f64, approach: f64) -> DVector<f64> {
     let mut pressure = DVector::zeros(gaps.len());
     for _ in 0..2000 {
@@ -610,8 +611,8 @@ fn questions_that_fail_do_not_disturb_the_path() -> Result<(), Error> {
     Ok(())
 }
 
-/// Answers of another size, that are no numbers, or to calls that were not passed on, and tolerances that are none: whatever it is,
-/// the path ends and no wrong state follows.
+/// Answers of another size, that are no numbers, or to calls that were not passed on, and tolerances that are none:
+/// whatever it is, the path ends and no wrong state follows.
 #[test]
 fn what_no_answer_can_be_is_refused() -> Result<(), Error> {
     let values: [fn(f64) -> f64; 3] = [|_| f64::NAN, |_| f64::INFINITY, |_| f64::NEG_INFINITY];

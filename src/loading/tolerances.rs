@@ -22,8 +22,8 @@ pub(super) fn ties_from(approach: f64, line: GapLine) -> f64 {
 /// Errors of the lengths in a window, with solutions of a tolerance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WindowTolerances {
-    /// The length that errors are relative to: the approach at the window's beginning, or a part of the mean gap if that is
-    /// greater.
+    /// The length that errors are relative to: the approach at the window's beginning, or a part of the mean gap if
+    /// that is greater.
     pub(super) length: f64,
     /// Tolerance of the solutions, relative to it; 0 if the updater is exact to rounding.
     pub(super) tolerance: f64,
@@ -45,7 +45,8 @@ impl WindowTolerances {
         self.tie.max(error / closing.max(1e-12))
     }
 
-    /// Error of the time at which a node that closes at a rate touches, by the error of its gap at the window's beginning.
+    /// Error of the time at which a node that closes at a rate touches, by the error of its gap at the window's
+    /// beginning.
     pub(super) fn time_of_gap(&self, closing: f64) -> f64 {
         OF_GAP * self.tolerance * self.length / closing.max(1e-12)
     }

@@ -101,7 +101,8 @@ pub(super) fn of_nodes(window: &Window, events: &[WindowEvent]) -> Vec<(usize, C
     events.iter().map(|event| (window.node(event.position), event.kind)).collect()
 }
 
-/// The contact behind some events, the nodes that yielded, and these with the number of their event and their places then.
+/// The contact behind some events, the nodes that yielded, and these with the number of their event and their places
+/// then.
 #[allow(clippy::type_complexity)]
 fn contact_behind(
     run: &LoadingRun,

@@ -10,18 +10,20 @@ use crate::{Error, Problem};
 impl LoadingPath {
     /// Adds the stiffnesses on unloading to states of this path, if it has a hardness:
     /// [`contact_unloading_stiffness`](crate::contact::PlasticState::contact_unloading_stiffness) and
-    /// [`interfacial_unloading_stiffness`](crate::contact::PlasticState::interfacial_unloading_stiffness). Other paths unload as they load.
+    /// [`interfacial_unloading_stiffness`](crate::contact::PlasticState::interfacial_unloading_stiffness). Other paths
+    /// unload as they load.
     ///
-    /// On unloading all nodes in contact are elastic. A factor of their influence matrix in the order in which they touched has the stiffness
-    /// after every touch, and yields do not change it: with w = L⁻¹e of the factor C = L Lᵀ it is ΔA Σ w² over the first n nodes. All states
-    /// together cost one factor of the largest contact among them, n³/3 flops and 4n² bytes for n nodes, and are exact to rounding. Nodes
-    /// that touch at the same approach have a stiffness each, of which only the last lasts.
+    /// On unloading all nodes in contact are elastic. A factor of their influence matrix in the order in which they
+    /// touched has the stiffness after every touch, and yields do not change it: with w = L⁻¹e of the factor C = L Lᵀ
+    /// it is ΔA Σ w² over the first n nodes. All states together cost one factor of the largest contact among them,
+    /// n³/3 flops and 4n² bytes for n nodes, and are exact to rounding. Nodes that touch at the same approach have a
+    /// stiffness each, of which only the last lasts.
     ///
     /// # Errors
     ///
-    /// [`Error::StateNotReached`] for states beyond the present one, [`Error::NotOnPath`] for more nodes in contact than this path has had,
-    /// [`Error::MemoryBudget`] if the factor does not fit beside what the path holds, and [`Error::FactorizationFailed`]. The states are left
-    /// as they were then.
+    /// [`Error::StateNotReached`] for states beyond the present one, [`Error::NotOnPath`] for more nodes in contact
+    /// than this path has had, [`Error::MemoryBudget`] if the factor does not fit beside what the path holds, and
+    /// [`Error::FactorizationFailed`]. The states are left as they were then.
     pub fn add_unloading_stiffness(&self, states: &mut [LoadingState]) -> Result<(), Error> {
         let run = &self.run;
         if run.plastic.is_none() {

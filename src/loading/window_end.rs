@@ -1,5 +1,5 @@
-//! Where a path is in its windows: what a record keeps besides states, so that a path that goes on is the one that was not
-//! interrupted.
+//! Where a path is in its windows: what a record keeps besides states, so that a path that goes on is the one that was
+//! not interrupted.
 
 use std::mem;
 use std::sync::Arc;
@@ -52,8 +52,8 @@ pub(crate) struct FactorEnd {
 }
 
 impl LoadingPath {
-    /// The end of the last window behind the state that was yielded last; `None` before the first one, behind states alone, in full
-    /// contact, and behind an error.
+    /// The end of the last window behind the state that was yielded last; `None` before the first one, behind states
+    /// alone, in full contact, and behind an error.
     pub(crate) fn window_end(&self) -> Option<WindowEnd> {
         use LoadingEnd::{Failed, FullContact, Memory};
         let is_over = matches!(self.end, Some(FullContact | Failed | Memory));
@@ -83,8 +83,8 @@ impl LoadingPath {
         Some(WindowEnd { ahead, handed_over_at: self.handed_over_at, next })
     }
 
-    /// Goes on at the end of a window behind the last of the states that were restored. Returns false, and nothing has changed, if
-    /// this path does not go on so: with another updater or rule, or with too little memory for it.
+    /// Goes on at the end of a window behind the last of the states that were restored. Returns false, and nothing has
+    /// changed, if this path does not go on so: with another updater or rule, or with too little memory for it.
     pub(super) fn follow_on(&mut self, end: &WindowEnd) -> Result<bool, Error> {
         let Some(last) = self.state else {
             return Ok(false);
@@ -184,7 +184,8 @@ impl LoadingPath {
                 (own.energy, front.contact.energy),
                 (stiffness(&own), stiffness(&front.contact)),
             ];
-            // They are those of the last state, but for a load that must not fall by rounding, and a stiffness that is infinite.
+            // They are those of the last state, but for a load that must not fall by rounding, and a stiffness that is
+            // infinite.
             let is_front =
                 pairs.iter().all(|(a, b)| a == b || (a - b).abs() <= RECOGNISED * b.abs());
             if !is_front || !run.scalars.is_sound(&own) {

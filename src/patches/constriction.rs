@@ -18,8 +18,8 @@ pub struct Constriction {
 }
 
 /// The narrowest place of the widest channel that leads along an axis through the nodes out of contact: of all channels
-/// the one whose least gap is greatest. Channels lead from one end of the grid to the other through the sides of cells, as in
-/// [`Percolation::of`](super::Percolation::of). `None` if none does: the contact seals.
+/// the one whose least gap is greatest. Channels lead from one end of the grid to the other through the sides of cells,
+/// as in [`Percolation::of`](super::Percolation::of). `None` if none does: the contact seals.
 ///
 /// It takes O(n log n) for n nodes out of contact.
 ///

@@ -70,8 +70,8 @@ impl ContactEdge {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a node outside the grid; [`Error::AlreadyInContact`] and [`Error::NotInContact`] for one
-    /// that cannot join or leave.
+    /// [`Error::OutOfRange`] for a node outside the grid; [`Error::AlreadyInContact`] and [`Error::NotInContact`] for
+    /// one that cannot join or leave.
     pub fn follow(&mut self, event: ContactEvent, (ix, iy): (usize, usize)) -> Result<(), Error> {
         let node = node_of(&self.grid, ix, iy)?;
         match (event, self.in_contact[node]) {

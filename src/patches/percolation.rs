@@ -16,19 +16,20 @@ pub(super) const CHANNELS: Connectivity = Connectivity::Four;
 /// along x at the first state at which no channel through the nodes out of contact does: from there on nothing leaks
 /// along x. `None` stands for what had not happened at the last state. There are two questions:
 ///
-/// * [`of`](Self::of), *from end to end*: a patch or a channel leads from one end of the grid to the other. Where the boundary repeats along
-///   the other direction it may lead across that border; the border between the ends is cut. This is a seal, with the fluid before one end and
-///   behind the other, and what percolation and sealing mean everywhere in this crate: [`Seal`](crate::leak::Seal) finds a leak exactly
-///   before `leak_x`.
-/// * [`winding`](Self::winding), *around the grid*: along a direction in which the boundary repeats, a patch or a channel winds around
-///   the grid, and so goes on without end in the repeated surface. One that climbs as it winds around goes on along both directions. What winds
-///   around leads from end to end as well, but what leads from end to end need not meet its own beginning across the border: contact percolates
-///   no later than it winds, and the gap seals no sooner than the last channel that winds is closed. Where the boundary does not repeat
-///   both are the same.
+/// * [`of`](Self::of), *from end to end*: a patch or a channel leads from one end of the grid to the other. Where the
+///   boundary repeats along the other direction it may lead across that border; the border between the ends is cut.
+///   This is a seal, with the fluid before one end and behind the other, and what percolation and sealing mean
+///   everywhere in this crate: [`Seal`](crate::leak::Seal) finds a leak exactly before `leak_x`.
+/// * [`winding`](Self::winding), *around the grid*: along a direction in which the boundary repeats, a patch or a
+///   channel winds around the grid, and so goes on without end in the repeated surface. One that climbs as it winds
+///   around goes on along both directions. What winds around leads from end to end as well, but what leads from end to
+///   end need not meet its own beginning across the border: contact percolates no later than it winds, and the gap
+///   seals no sooner than the last channel that winds is closed. Where the boundary does not repeat both are the same.
 ///
-/// Patches have the `connectivity` given. Channels pass through the sides of cells, as [flow](crate::leak) does, whatever the connectivity, so that
-/// a patch and a channel never cross. With [`Connectivity::Eight`], from end to end, one of the two leads along one direction exactly if
-/// the other does not lead along the other: on a free boundary `leak_x` is `contact_y`, and `leak_y` is `contact_x`.
+/// Patches have the `connectivity` given. Channels pass through the sides of cells, as [flow](crate::leak) does,
+/// whatever the connectivity, so that a patch and a channel never cross. With [`Connectivity::Eight`], from end to end,
+/// one of the two leads along one direction exactly if the other does not lead along the other: on a free boundary
+/// `leak_x` is `contact_y`, and `leak_y` is `contact_x`.
 ///
 /// Nodes that never touch are open throughout. Both take O(n α(n)), the channels from the last state backwards.
 ///

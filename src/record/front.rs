@@ -108,7 +108,8 @@ mod tests {
         ])
     }
 
-    /// A hundredth more or less of either stiffness is refused with a factor, a twentieth without one, whatever the body.
+    /// A hundredth more or less of either stiffness is refused with a factor, a twentieth without one, whatever the
+    /// body.
     #[test]
     fn the_last_stiffnesses_are_those_of_the_next_window() -> Result<(), Error> {
         let grid = Grid::new(18, 15, 1.0, 1.5)?;

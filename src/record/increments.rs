@@ -1,8 +1,8 @@
 //! Whether the numbers of states follow from each other.
 //!
-//! Between two events a path is linear in the approach: its load, mean gap, energy and what has yielded follow at each state from the one before
-//! and its stiffnesses. First touch follows from the surface, areas from the number of nodes, and a node that touches makes a contact
-//! stiffer. A number that was changed afterwards contradicts one of these.
+//! Between two events a path is linear in the approach: its load, mean gap, energy and what has yielded follow at each
+//! state from the one before and its stiffnesses. First touch follows from the surface, areas from the number of nodes,
+//! and a node that touches makes a contact stiffer. A number that was changed afterwards contradicts one of these.
 
 use nalgebra::DMatrix;
 
@@ -14,8 +14,8 @@ use crate::loading::LoadingState;
 use crate::surface::HeightMap;
 use crate::{Error, Grid};
 
-/// What rounding may change, relative to the greatest numbers of a path: sums over up to 10⁶ events, each to 10⁻¹⁶ of them, and the
-/// 10⁻¹⁰ to which a path that goes on from a record is the one that was not interrupted.
+/// What rounding may change, relative to the greatest numbers of a path: sums over up to 10⁶ events, each to 10⁻¹⁶ of
+/// them, and the 10⁻¹⁰ to which a path that goes on from a record is the one that was not interrupted.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Products and sums of the numbers of nodes and cells.
 const FEW_ROUNDINGS: f64 = 1e-14;
@@ -43,7 +43,8 @@ impl Found {
 
 /// Checks the states of a path on a surface.
 ///
-/// Estimated errors of the approach are taken at their word: loads and gaps are off by what they are at an approach that is off by so much.
+/// Estimated errors of the approach are taken at their word: loads and gaps are off by what they are at an approach
+/// that is off by so much.
 pub(super) fn check(
     grid: &Grid,
     heights: &HeightMap,
@@ -64,8 +65,8 @@ pub(super) fn check(
     .at(first)?;
     let mean_gap = -heights.matrix().mean();
     first_touch(first, mean_gap)?;
-    // On a flat surface nothing is left of lengths but the rounding of displacements: of what the load displaces on average, or those of
-    // strains below 1.
+    // On a flat surface nothing is left of lengths but the rounding of displacements: of what the load displaces on
+    // average, or those of strains below 1.
     let stiffnesses = Stiffnesses::new(grid, origin);
     let (lx, ly) = grid.sides();
     let displaced = lx.max(ly).max(stiffnesses.displaced(last.contact.load));

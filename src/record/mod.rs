@@ -1,8 +1,8 @@
 //! The record of a path: to read, to keep, and to go on from.
 //!
 //! A [`LoadingRecord`] holds the surface, what kernel it was, the states and why they end: enough to read the path at
-//! any load, approach, mean gap or area ([`history`](LoadingRecord::history)), to compute the fields of any of its states
-//! ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)).
+//! any load, approach, mean gap or area ([`history`](LoadingRecord::history)), to compute the fields of any of its
+//! states ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)).
 //!
 //! ```
 //! use asperity::record::LoadingRecord;
@@ -126,7 +126,8 @@ impl RecordedHardness {
 }
 
 impl LoadingRecord {
-    /// The record of a path and of the states that it has yielded, with the end of its last window if these are all of them.
+    /// The record of a path and of the states that it has yielded, with the end of its last window if these are all of
+    /// them.
     ///
     /// # Errors
     ///
@@ -157,10 +158,10 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`Error::GridMismatch`] for heights of another grid; [`Error::NotFinite`] for a state with a scalar that no state has;
-    /// [`Error::NotOnPath`], [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for states that
-    /// are in no order of a path; [`Error::Inconsistent`] for a number of a state that does not follow from the states before, which have
-    /// the rates of all that changes between two events.
+    /// [`Error::GridMismatch`] for heights of another grid; [`Error::NotFinite`] for a state with a scalar that no
+    /// state has; [`Error::NotOnPath`], [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and
+    /// [`Error::NotInContact`] for states that are in no order of a path; [`Error::Inconsistent`] for a number of a
+    /// state that does not follow from the states before, which have the rates of all that changes between two events.
     pub fn from_parts(
         grid: Grid,
         heights: HeightMap,
@@ -194,13 +195,14 @@ impl LoadingRecord {
         Ok(Self { grid, heights, kernel, settings, history, end, bodies: Vec::new() })
     }
 
-    /// The same with the bodies, each its Young's modulus \[Pa\] and Poisson's ratio, whose composite modulus the kernel has: of one body
-    /// if the other is rigid, none if only E* is known. The path does not depend on them; what is tangential does.
+    /// The same with the bodies, each its Young's modulus \[Pa\] and Poisson's ratio, whose composite modulus the
+    /// kernel has: of one body if the other is rigid, none if only E* is known. The path does not depend on them; what
+    /// is tangential does.
     ///
     /// # Errors
     ///
-    /// Those of [`plane_strain_modulus`] and [`composite_modulus`]; [`Error::LengthMismatch`] for more than two, and [`Error::OutOfRange`]
-    /// if their composite modulus is not that of the kernel, or if that is of layers.
+    /// Those of [`plane_strain_modulus`] and [`composite_modulus`]; [`Error::LengthMismatch`] for more than two, and
+    /// [`Error::OutOfRange`] if their composite modulus is not that of the kernel, or if that is of layers.
     pub fn with_bodies(mut self, bodies: &[(f64, f64)]) -> Result<Self, Error> {
         let e_star = match *bodies {
             [] => None,
@@ -218,7 +220,8 @@ impl LoadingRecord {
         Ok(self)
     }
 
-    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body, if they are known: of one if the other is rigid.
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body, if they are known: of one if the other is
+    /// rigid.
     #[must_use]
     pub fn bodies(&self) -> &[(f64, f64)] {
         &self.bodies
@@ -246,8 +249,8 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`Error::ForeignKernel`] if it is not one of this crate, and [`Error::WrongKernel`] if this version makes another one
-    /// of it.
+    /// [`Error::ForeignKernel`] if it is not one of this crate, and [`Error::WrongKernel`] if this version makes
+    /// another one of it.
     pub fn make_kernel(&self) -> Result<KernelTable, Error> {
         self.kernel.make(self.grid)
     }
@@ -290,9 +293,10 @@ impl LoadingRecord {
     /// [`LoadingPath::continue_to`]. See [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume) for
     /// what it costs, and for other updaters.
     ///
-    /// The same nodes touch next as on a path that was never interrupted. A record [made](Self::new) at the last state of its path knows where
-    /// the window of that state ended, and how the factor grew: all states are the same bit for bit. Otherwise, and
-    /// with a hardness and without a factor, they are the same to their estimated error, with a factor to rounding: windows begin elsewhere.
+    /// The same nodes touch next as on a path that was never interrupted. A record [made](Self::new) at the last state
+    /// of its path knows where the window of that state ended, and how the factor grew: all states are the same bit for
+    /// bit. Otherwise, and with a hardness and without a factor, they are the same to their estimated error, with a
+    /// factor to rounding: windows begin elsewhere.
     ///
     /// # Errors
     ///

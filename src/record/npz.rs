@@ -111,11 +111,11 @@ const PLASTIC_COLUMNS: [PlasticColumn; 4] = [
 
 impl LoadingRecord {
     /// Writes the record as an `.npz` archive, which `numpy.load` opens: an array for each column of the states,
-    /// `patches`, `largest_patch` and `perimeter` beside them, `heights`, `activation` (the load at which each node touched, NaN
-    /// where none has), the fields given, and `parameters`, a text of JSON with units and versions.
+    /// `patches`, `largest_patch` and `perimeter` beside them, `heights`, `activation` (the load at which each node
+    /// touched, NaN where none has), the fields given, and `parameters`, a text of JSON with units and versions.
     ///
-    /// The file is written under another name beside its place and then renamed: what has the name is whole. A device is
-    /// written to as it is.
+    /// The file is written under another name beside its place and then renamed: what has the name is whole. A device
+    /// is written to as it is.
     ///
     /// # Errors
     ///
@@ -222,8 +222,8 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`FileError::Io`]; [`FileError::BadFile`] for a file that is damaged, not a record, or of a newer version; those of
-    /// [`Self::from_parts`].
+    /// [`FileError::Io`]; [`FileError::BadFile`] for a file that is damaged, not a record, or of a newer version; those
+    /// of [`Self::from_parts`].
     pub fn read_npz(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let archive = Archive::open(path, NAME)?;

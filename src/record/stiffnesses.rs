@@ -32,19 +32,21 @@ struct HalfSpace {
 enum Mean {
     /// Of a periodic half-space a gauge, great enough for contact to stiffen as it grows in it.
     Gauge(f64),
-    /// Where there is a distant point, between these: those of the place where a uniform pressure displaces the surface least, and most.
+    /// Where there is a distant point, between these: those of the place where a uniform pressure displaces the surface
+    /// least, and most.
     Between(f64, f64),
 }
 
 impl HalfSpace {
-    /// One node that joins adds `ΔA r²/σ` to dW/dδ, with the rate r of its gap, from 0 to 1, and its compliance σ among the others,
-    /// which is no less than the least eigenvalue of all coefficients: the answer to the shortest wave of the grid, `2/(E* q)`. Love's cells
-    /// answer it by a sixth more and up to a third.
+    /// One node that joins adds `ΔA r²/σ` to dW/dδ, with the rate r of its gap, from 0 to 1, and its compliance σ among
+    /// the others, which is no less than the least eigenvalue of all coefficients: the answer to the shortest wave of
+    /// the grid, `2/(E* q)`. Love's cells answer it by a sixth more and up to a third.
     fn new(grid: &Grid, origin: &KernelOrigin) -> Option<Self> {
         let (a, b) = grid.sides();
         let area = grid.nominal_area();
         let shortest = 2.0 / (PI * (1.0 / grid.dx()).hypot(1.0 / grid.dy()));
-        // With the pressure of a node in full contact, over E* and for each metre of the approach: in the middle of a contact around all it is less.
+        // With the pressure of a node in full contact, over E* and for each metre of the approach: in the middle of a
+        // contact around all it is less.
         let (e_star, mean, pressure) = match *origin {
             KernelOrigin::Boussinesq { e_star } => {
                 // Under 1 Pa on the rectangle, at a corner; in the middle four quarters meet.
@@ -75,7 +77,8 @@ impl HalfSpace {
         Some(Self { step, closes: 0.5 * shortest * pressure, mean })
     }
 
-    /// dW/dδ \[N/m\], of a periodic half-space in its gauge. Where nodes have yielded, part of the approach is lost to their depth.
+    /// dW/dδ \[N/m\], of a periodic half-space in its gauge. Where nodes have yielded, part of the approach is lost to
+    /// their depth.
     fn stiffness(&self, contact: &ContactState) -> Option<f64> {
         match self.mean {
             Mean::Between(..) => contact.contact_stiffness,
@@ -158,8 +161,9 @@ impl Stiffnesses {
         under * load
     }
 
-    /// A node that touches makes a contact stiffer, one that leaves or yields softer; both stiffnesses are positive on a half-space, and
-    /// 0 on a plateau alone. There one node makes at most so much of a difference, and one stiffness bounds the other within some per cent.
+    /// A node that touches makes a contact stiffer, one that leaves or yields softer; both stiffnesses are positive on
+    /// a half-space, and 0 on a plateau alone. There one node makes at most so much of a difference, and one stiffness
+    /// bounds the other within some per cent.
     pub(super) fn check(
         &self,
         before: Option<&LoadingState>,
@@ -244,9 +248,9 @@ mod tests {
         LoadingRecord::from_parts(grid, record.heights.clone(), kernel, settings, history, end)
     }
 
-    /// Paths that end, with nothing behind the last state and no window, on square and long cells, also where most nodes have yielded, and in
-    /// full contact: each is a record, and none if a stiffness of the last state is changed by much. A double one is seen with few open nodes
-    /// or a sure other stiffness.
+    /// Paths that end, with nothing behind the last state and no window, on square and long cells, also where most
+    /// nodes have yielded, and in full contact: each is a record, and none if a stiffness of the last state is changed
+    /// by much. A double one is seen with few open nodes or a sure other stiffness.
     #[test]
     fn stiffnesses_of_the_last_state_are_bounded() -> Result<(), Error> {
         for grid in [Grid::new(20, 18, 1.0, 1.0)?, Grid::new(24, 10, 1.0, 7.0)?] {

@@ -16,8 +16,8 @@ use crate::Error;
 ///
 /// # Which stiffness
 ///
-/// The incremental one: the derivative on further loading of the nodes in contact, which every state of a path
-/// has. The secant W/δ has no such meaning. Where nodes have yielded it is the one on *unloading*, of all nodes in contact:
+/// The incremental one: the derivative on further loading of the nodes in contact, which every state of a path has. The
+/// secant W/δ has no such meaning. Where nodes have yielded it is the one on *unloading*, of all nodes in contact:
 /// [`Conduction`](crate::joint::Conduction) takes it.
 ///
 /// * *Free half-space* ([`Boussinesq`](crate::Boussinesq)): `contact_stiffness`, dW/dδ for the approach of distant
@@ -28,12 +28,12 @@ use crate::Error;
 ///   bodies with a uniform current, for one period of the surface. In full contact it adds nothing, and the
 ///   conductance is infinite.
 ///
-/// * *Half-space that repeats along one side* ([`SemiPeriodicBoussinesq`](crate::SemiPeriodicBoussinesq)): `interfacial_stiffness`, and the same meaning.
-///   A row of contacts without end has no resistance to a distant point: it grows with the logarithm of the distance, and dW/dδ with the convention
-///   of the approach.
+/// * *Half-space that repeats along one side* ([`SemiPeriodicBoussinesq`](crate::SemiPeriodicBoussinesq)):
+///   `interfacial_stiffness`, and the same meaning. A row of contacts without end has no resistance to a distant point:
+///   it grows with the logarithm of the distance, and dW/dδ with the convention of the approach.
 ///
-/// `contact.contact_stiffness.or(contact.interfacial_stiffness)` is the right one on the first two. A layer, or a graded
-/// body, has no such analogy: current and displacement solve different problems there.
+/// `contact.contact_stiffness.or(contact.interfacial_stiffness)` is the right one on the first two. A layer, or a
+/// graded body, has no such analogy: current and displacement solve different problems there.
 ///
 /// ```
 /// use asperity::reference::contact_conductance;

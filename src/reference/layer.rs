@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use crate::{Error, plane_strain_modulus};
 
-/// Displacement over pressure Ĉ(q) \[m/Pa\] of a wave of wave number `q` \[rad/m\] on a layer (E₁, ν₁, h) bonded to an elastic
-/// half-space (E₂, ν₂), or to a rigid base (`None`), without friction.
+/// Displacement over pressure Ĉ(q) \[m/Pa\] of a wave of wave number `q` \[rad/m\] on a layer (E₁, ν₁, h) bonded to an
+/// elastic half-space (E₂, ν₂), or to a rigid base (`None`), without friction.
 ///
-/// Nogi and Kato's formula, see [`LayeredBody`](crate::kernel::LayeredBody), with differences of like numbers taken before they are
-/// evaluated: with x = q h, u = 1 − Λ and w = 1 − κ
+/// Nogi and Kato's formula, see [`LayeredBody`](crate::kernel::LayeredBody), with differences of like numbers taken
+/// before they are evaluated: with x = q h, u = 1 − Λ and w = 1 − κ
 ///
 /// ```math
 /// \hat C = \frac{1 - \nu_1}{G_1 q}\, \frac
@@ -77,9 +77,9 @@ fn series(mut term: f64, y: f64, mut k: f64) -> f64 {
 
 /// A layer that is thin beside the contact, bonded to a rigid base, without friction.
 ///
-/// A compressible layer answers as a mattress, u = h p / M with the confined modulus M = E (1 − ν) / ((1 + ν)(1 − 2ν)). An
-/// incompressible one, ν = ½, flows like a film, u = −h³ ∇²p / E. Errors of the load are of the order (h/a)² under a sphere with the
-/// contact radius a, and h/a under a punch of that radius. They are greater for ν near ½.
+/// A compressible layer answers as a mattress, u = h p / M with the confined modulus M = E (1 − ν) / ((1 + ν)(1 − 2ν)).
+/// An incompressible one, ν = ½, flows like a film, u = −h³ ∇²p / E. Errors of the load are of the order (h/a)² under a
+/// sphere with the contact radius a, and h/a under a punch of that radius. They are greater for ν near ½.
 ///
 /// K. L. Johnson, *Contact Mechanics*, §5.8; M. J. Jaffar, Int. J. Mech. Sci. 31 (1989) 229.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,7 +114,8 @@ impl ThinLayer {
         self.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * self.thickness)
     }
 
-    /// Approach under a sphere of radius R = `radius` \[m\] with a contact of radius a: a²/(2R), and a²/(4R) if incompressible.
+    /// Approach under a sphere of radius R = `radius` \[m\] with a contact of radius a: a²/(2R), and a²/(4R) if
+    /// incompressible.
     #[must_use]
     pub fn sphere_approach(&self, radius: f64, contact_radius: f64) -> f64 {
         let depth = contact_radius * contact_radius / (2.0 * radius);
@@ -132,8 +133,8 @@ impl ThinLayer {
         }
     }
 
-    /// Pressure under it \[Pa\] at the distance `r` from the axis: M (a² − r²) / (2 R h), and E (a² − r²)² / (32 R h³) if
-    /// incompressible.
+    /// Pressure under it \[Pa\] at the distance `r` from the axis: M (a² − r²) / (2 R h), and E (a² − r²)² / (32 R h³)
+    /// if incompressible.
     #[must_use]
     pub fn sphere_pressure(&self, radius: f64, contact_radius: f64, r: f64) -> f64 {
         let inside = (contact_radius * contact_radius - r * r).max(0.0);
@@ -208,8 +209,8 @@ mod tests {
         Ok(())
     }
 
-    /// Loads are integrals of pressures, and the approach is where they come from: dW = (area of the punch of the contact's outline)
-    /// stiffness × dδ.
+    /// Loads are integrals of pressures, and the approach is where they come from: dW = (area of the punch of the
+    /// contact's outline) stiffness × dδ.
     #[test]
     fn spheres_on_thin_layers_are_consistent() -> Result<(), Error> {
         for nu in [0.3, 0.5] {

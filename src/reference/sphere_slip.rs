@@ -3,14 +3,14 @@
 use super::{HertzSphere, positive_part};
 use crate::Error;
 
-/// A sphere that is pressed with a load P and sheared with a tangential load T below μP: it sticks within a circle and slips
-/// around it.
+/// A sphere that is pressed with a load P and sheared with a tangential load T below μP: it sticks within a circle and
+/// slips around it.
 ///
-/// The bodies have the ratio κ of tangential to normal compliance (see [`Friction`](crate::slip::Friction)) and are not coupled. A
-/// tangential load of at least μP, at which the sphere slides, counts as μP; one of the other sign as none.
+/// The bodies have the ratio κ of tangential to normal compliance (see [`Friction`](crate::slip::Friction)) and are not
+/// coupled. A tangential load of at least μP, at which the sphere slides, counts as μP; one of the other sign as none.
 ///
-/// Cattaneo, Rend. Accad. Naz. Lincei 27 (1938) 342; Mindlin, J. Appl. Mech. 16 (1949) 259; Mindlin & Deresiewicz, J. Appl. Mech. 20
-/// (1953) 327; Johnson, *Contact Mechanics*, §7.2 and §7.4.
+/// Cattaneo, Rend. Accad. Naz. Lincei 27 (1938) 342; Mindlin, J. Appl. Mech. 16 (1949) 259; Mindlin & Deresiewicz, J.
+/// Appl. Mech. 20 (1953) 327; Johnson, *Contact Mechanics*, §7.2 and §7.4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SphereSlip {
     sphere: HertzSphere,
@@ -95,7 +95,8 @@ impl SphereSlip {
         4.0 * self.compliance_ratio * work * bracket
     }
 
-    /// Traction at distance `r` from the centre \[Pa\], `q = μ [p(r) − p*(r)]` with the Hertz pressures of P and of P − T/μ.
+    /// Traction at distance `r` from the centre \[Pa\], `q = μ [p(r) − p*(r)]` with the Hertz pressures of P and of P −
+    /// T/μ.
     #[must_use]
     pub fn traction(&self, r: f64, tangential_load: f64) -> f64 {
         let approach = self.approach();
@@ -104,8 +105,8 @@ impl SphereSlip {
         self.friction * (self.sphere.pressure(r, approach) - stick)
     }
 
-    /// Slip at distance `r` from the centre \[m\]: 0 within the stick radius, and κμ times the gap under P − T/μ around it, as far
-    /// as there is contact.
+    /// Slip at distance `r` from the centre \[m\]: 0 within the stick radius, and κμ times the gap under P − T/μ around
+    /// it, as far as there is contact.
     #[must_use]
     pub fn slip(&self, r: f64, tangential_load: f64) -> f64 {
         let (r, approach) = (r.abs(), self.approach());
@@ -123,8 +124,8 @@ impl SphereSlip {
 mod tests {
     use super::*;
 
-    /// Sums over rings: the traction carries T, and a cycle loses 4 times the traction limit times the slip, which shares no
-    /// formula with the closed one.
+    /// Sums over rings: the traction carries T, and a cycle loses 4 times the traction limit times the slip, which
+    /// shares no formula with the closed one.
     #[test]
     fn tractions_and_slips_add_up() -> Result<(), Error> {
         let sphere = HertzSphere::new(2.0, 3.0)?;

@@ -45,7 +45,8 @@ impl Friction {
         })
     }
 
-    /// Friction of coefficient μ between two bodies, each given by (E, ν) with E in Pa; without a second one that is rigid.
+    /// Friction of coefficient μ between two bodies, each given by (E, ν) with E in Pa; without a second one that is
+    /// rigid.
     ///
     /// ```math
     /// \kappa = \frac{E^\ast}{G^\ast}, \qquad
@@ -53,8 +54,8 @@ impl Friction {
     /// \frac{1}{G^\ast} = \sum_i \frac{2-\nu_i}{4 G_i}, \qquad
     /// \beta = \frac{(1-2\nu_1)/G_1 - (1-2\nu_2)/G_2}{2 \sum_i (1-\nu_i)/G_i}
     /// ```
-    /// with Gᵢ = Eᵢ/(2(1 + νᵢ)). Of bodies alike, and against a rigid one, κ = (2 − ν)/(2(1 − ν)). The G* of Johnson, *Contact
-    /// Mechanics*, §7.2, is a quarter of this.
+    /// with Gᵢ = Eᵢ/(2(1 + νᵢ)). Of bodies alike, and against a rigid one, κ = (2 − ν)/(2(1 − ν)). The G* of Johnson,
+    /// *Contact Mechanics*, §7.2, is a quarter of this.
     ///
     /// # Errors
     ///

@@ -10,11 +10,11 @@ use crate::{Error, LoadingPath, SlipError};
 
 /// A contact under any history of the load P and the tangential load T, by steps that are linear in both.
 ///
-/// The traction is `q = ∫ λ(s) dp(s)` with a ratio λ between −μ and μ that is constant in pieces of the load s from 0 to P. A step
-/// changes the pieces at the top: where T changes fast, a piece of ±μ, the slip zone, eats those below it; where P grows and T
-/// follows slowly, a piece of the ratio dT/dP comes on top of them; where P falls, the top is cut off (Jäger, *A New Principle in
-/// Contact Mechanics*, J. Tribol. 120 (1998) 677; Aleshin, Bou Matar & Van Den Abeele, Int. J. Solids Struct. 60–61 (2015) 84). At
-/// constant P this is Masing's rule: loops that close are forgotten.
+/// The traction is `q = ∫ λ(s) dp(s)` with a ratio λ between −μ and μ that is constant in pieces of the load s from 0
+/// to P. A step changes the pieces at the top: where T changes fast, a piece of ±μ, the slip zone, eats those below it;
+/// where P grows and T follows slowly, a piece of the ratio dT/dP comes on top of them; where P falls, the top is cut
+/// off (Jäger, *A New Principle in Contact Mechanics*, J. Tribol. 120 (1998) 677; Aleshin, Bou Matar & Van Den Abeele,
+/// Int. J. Solids Struct. 60–61 (2015) 84). At constant P this is Masing's rule: loops that close are forgotten.
 ///
 /// A step takes O(log N) for each piece that it ends, of a path of N states.
 ///
@@ -88,7 +88,8 @@ fn left(part: f64, load: f64, force: f64) -> (f64, f64) {
     ((1.0 - part) * load, (1.0 - part) * force)
 }
 
-/// Where a front stops that would get so far: at the lower end of the piece below it, if it reaches that or nearly does.
+/// Where a front stops that would get so far: at the lower end of the piece below it, if it reaches that or nearly
+/// does.
 fn stop(reach: f64, below: &Piece, load: f64) -> f64 {
     let lowest = below.start.load;
     if reach <= lowest + SAME_LOAD * load { lowest } else { reach }
@@ -106,9 +107,10 @@ impl<'a> SlipHistory<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for what is not finite, and for a negative load; [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore)
-    /// for a load that the path has not reached; [`SlipError::JointSlides`] for |T| > μP, and [`SlipError::StaysAtLimit`] if |T| = μP
-    /// all along the step while P changes: the displacement is unknown then; [`Error::NotHomogeneous`] for a path on layers. The history is as
+    /// [`Error::OutOfRange`] for what is not finite, and for a negative load;
+    /// [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore) for a load that the path has not reached;
+    /// [`SlipError::JointSlides`] for |T| > μP, and [`SlipError::StaysAtLimit`] if |T| = μP all along the step while P
+    /// changes: the displacement is unknown then; [`Error::NotHomogeneous`] for a path on layers. The history is as
     /// before after an error.
     pub fn to(&mut self, load: f64, tangential_load: f64) -> Result<SlipState, Error> {
         self.bed.history().layering().check(Theory::Slip)?;
@@ -247,8 +249,8 @@ impl<'a> SlipHistory<'a> {
             self.load = target;
             return Ok(());
         }
-        // Slip from the edge, and the front recedes. What is left of the step is counted in both loads: where P hardly changes, its digits
-        // say nothing of how far the step is.
+        // Slip from the edge, and the front recedes. What is left of the step is counted in both loads: where P hardly
+        // changes, its digits say nothing of how far the step is.
         let top = slope.signum() * limit;
         let mut rise = target.load - self.load.load;
         while rise > 0.0 {
@@ -296,8 +298,8 @@ impl<'a> SlipHistory<'a> {
                 self.cut(target);
                 return Ok(());
             };
-            // How far the front would fall in the rest of the step, and after which parts of it the piece below is eaten, or the load
-            // has reached the front, so that the slip zone is gone.
+            // How far the front would fall in the rest of the step, and after which parts of it the piece below is
+            // eaten, or the load has reached the front, so that the slip zone is gone.
             let way = ((top * fall + change) / (top - below.ratio)).max(0.0);
             let (now, lowest) = (self.load.load, below.start.load);
             let eaten = (front.load - lowest) / way;
@@ -391,7 +393,8 @@ fn friction_work([p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) -> f64 {
     (fixed + above - under + moving).max(0.0)
 }
 
-/// ∫ (s₁ − s) dδ(s) from s₀ up to s₁, by the energy ∫ s dδ: differences, which rounding does not leave where the integral can be.
+/// ∫ (s₁ − s) dδ(s) from s₀ up to s₁, by the energy ∫ s dδ: differences, which rounding does not leave where the
+/// integral can be.
 fn before_end(start: &BedState, end: &BedState) -> f64 {
     let (loads, approaches) = (end.load - start.load, end.approach - start.approach);
     let rest = end.load * approaches - (end.energy - start.energy);

@@ -47,13 +47,14 @@ pub struct SlipCycle {
 
 /// An element of Jenkins: a spring and a slider in series.
 ///
-/// A joint under a constant load is made of N of them side by side (Iwan, J. Appl. Mech. 34 (1967) 612), one for each node in
-/// contact.
+/// A joint under a constant load is made of N of them side by side (Iwan, J. Appl. Mech. 34 (1967) 612), one for each
+/// node in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct JenkinsElement {
-    /// Tangential stiffness, k = ΔK/κ \[N/m\]. See [`Spring::stiffness`](crate::bed::Spring::stiffness) for paths without a factor.
+    /// Tangential stiffness, k = ΔK/κ \[N/m\]. See [`Spring::stiffness`](crate::bed::Spring::stiffness) for paths
+    /// without a factor.
     pub stiffness: f64,
     /// Displacement at which it slips, φ \[m\].
     pub slip_displacement: f64,
@@ -97,7 +98,8 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for a load that is not; [`Error::NotHomogeneous`] for a path on layers; [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore).
+    /// [`Error::NotPositive`] for a load that is not; [`Error::NotHomogeneous`] for a path on layers;
+    /// [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore).
     pub fn new(bed: &'a Bed<'a>, load: f64, friction: Friction) -> Result<Self, Error> {
         bed.history().layering().check(Theory::Slip)?;
         let preload = bed.at_load(Error::require_positive("load", load)?)?;
@@ -144,8 +146,8 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// [`SlipError::JointSlides`] beyond μP, at which P* is 0 and U that of incipient sliding; [`Error::OutOfRange`] for what is not
-    /// finite.
+    /// [`SlipError::JointSlides`] beyond μP, at which P* is 0 and U that of incipient sliding; [`Error::OutOfRange`]
+    /// for what is not finite.
     pub fn monotone(&self, tangential_load: f64) -> Result<SlipState, Error> {
         let stick = self.stick(tangential_load)?;
         let (friction, preload) = (&self.friction, &self.preload);
@@ -162,13 +164,15 @@ impl<'a> PartialSlip<'a> {
     /// D = 8\kappa\mu^2 \times \text{the area between } W(\delta) \text{ and its chord from } P^\ast \text{ to } P
     ///   = 4 \sum_n k_n \varphi_n (U - \varphi_n)
     /// ```
-    /// over the [elements](Self::jenkins_elements) that slip. Both are sums of positive terms; the first is used, since it needs no
-    /// stiffness. It is a quantity of the *cycle*: with bodies that are not alike the first loading loses more than D/4.
+    /// over the [elements](Self::jenkins_elements) that slip. Both are sums of positive terms; the first is used, since
+    /// it needs no stiffness. It is a quantity of the *cycle*: with bodies that are not alike the first loading loses
+    /// more than D/4.
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the amplitude; those of [`Self::monotone`]; [`SlipError::WithinPathError`] if the path has been
-    /// computed without a factor and the slip zone is so thin that its estimated errors are a tenth of what D is made of.
+    /// [`Error::NotPositive`] for the amplitude; those of [`Self::monotone`]; [`SlipError::WithinPathError`] if the
+    /// path has been computed without a factor and the slip zone is so thin that its estimated errors are a tenth of
+    /// what D is made of.
     pub fn cycle(&self, amplitude: f64) -> Result<SlipCycle, Error> {
         let amplitude = Error::require_positive("amplitude of the tangential load", amplitude)?;
         let stick = self.stick(amplitude)?;
@@ -191,8 +195,8 @@ impl<'a> PartialSlip<'a> {
         Ok(SlipCycle::new(&state, scale * area.max(0.0)))
     }
 
-    /// The steady cycle of the displacement between −U and U \[m\]. Beyond [sliding](Self::sliding_displacement) the joint slides
-    /// at T = μP for the rest of the way, which costs `4μP (U − κμδ)` more.
+    /// The steady cycle of the displacement between −U and U \[m\]. Beyond [sliding](Self::sliding_displacement) the
+    /// joint slides at T = μP for the rest of the way, which costs `4μP (U − κμδ)` more.
     ///
     /// # Errors
     ///
@@ -215,11 +219,12 @@ impl<'a> PartialSlip<'a> {
         Ok(SlipCycle::new(&state, dissipation))
     }
 
-    /// The elements of Jenkins that make up the joint, in the order in which nodes have touched: the last ones slip first.
+    /// The elements of Jenkins that make up the joint, in the order in which nodes have touched: the last ones slip
+    /// first.
     ///
-    /// Element n has the stiffness `k = ΔKₙ/κ` and slips at `φ = κμ (δ − δₙ)`. Together they have the stiffness `K/κ`, and slip
-    /// forces whose sum is μP. Their density of slip displacements weighted with k is that of Iwan's model, −d²T/dU² (Segalman,
-    /// J. Appl. Mech. 72 (2005) 752).
+    /// Element n has the stiffness `k = ΔKₙ/κ` and slips at `φ = κμ (δ − δₙ)`. Together they have the stiffness `K/κ`,
+    /// and slip forces whose sum is μP. Their density of slip displacements weighted with k is that of Iwan's model,
+    /// −d²T/dU² (Segalman, J. Appl. Mech. 72 (2005) 752).
     ///
     /// Under full contact of a periodic half-space the last node makes the joint rigid; it is left out.
     pub fn jenkins_elements(&self) -> impl Iterator<Item = JenkinsElement> + '_ {
@@ -231,7 +236,8 @@ impl<'a> PartialSlip<'a> {
         })
     }
 
-    /// Traction `q = ±μ [p(P) − p(P*)]` \[Pa\] under a tangential load that has grown from zero: two fields of the path.
+    /// Traction `q = ±μ [p(P) − p(P*)]` \[Pa\] under a tangential load that has grown from zero: two fields of the
+    /// path.
     ///
     /// # Errors
     ///
@@ -248,8 +254,8 @@ impl<'a> PartialSlip<'a> {
         Ok((full - sticking) * scale)
     }
 
-    /// Slip `±κμ g(P*)` \[m\] of the nodes in contact, 0 where they stick: a field of the path. In a steady cycle it is the
-    /// amplitude of their slip.
+    /// Slip `±κμ g(P*)` \[m\] of the nodes in contact, 0 where they stick: a field of the path. In a steady cycle it is
+    /// the amplitude of their slip.
     ///
     /// # Errors
     ///
@@ -289,8 +295,8 @@ impl<'a> PartialSlip<'a> {
         }))
     }
 
-    /// Work of friction of each node in a steady cycle, per area: `4κμ² p(P) g(P*)` \[J/m²\]. Times the area of a cell it sums to
-    /// [`SlipCycle::dissipation`]. Two fields of the path.
+    /// Work of friction of each node in a steady cycle, per area: `4κμ² p(P) g(P*)` \[J/m²\]. Times the area of a cell
+    /// it sums to [`SlipCycle::dissipation`]. Two fields of the path.
     ///
     /// # Errors
     ///

@@ -13,11 +13,11 @@ pub struct SlipState {
     pub load: f64,
     /// Tangential load T \[N\], of either sign.
     pub tangential_load: f64,
-    /// Tangential displacement U \[m\]: that of distant points of both bodies against each other, and of the mean planes on a
-    /// periodic half-space. Where the whole contact slips it is that at which sliding begins.
+    /// Tangential displacement U \[m\]: that of distant points of both bodies against each other, and of the mean
+    /// planes on a periodic half-space. Where the whole contact slips it is that at which sliding begins.
     pub displacement: f64,
-    /// What the joint itself gives way \[m\]: the relative displacement of the two surfaces, averaged over the nominal area, as
-    /// the mean gap is for the approach. It does not depend on the size of the bodies.
+    /// What the joint itself gives way \[m\]: the relative displacement of the two surfaces, averaged over the nominal
+    /// area, as the mean gap is for the approach. It does not depend on the size of the bodies.
     pub interfacial_displacement: f64,
     /// P* \[N\]: nodes in contact at this load of the path stick, all others slip or have just slipped.
     pub stick_load: f64,
@@ -29,7 +29,8 @@ pub struct SlipState {
     pub stick_area: f64,
     /// Area that slips \[m²\].
     pub slip_area: f64,
-    /// Tangent stiffness `dT/dU = K(P*)/κ` \[N/m\], if T goes on at constant load as it went; 0 where the whole contact slips.
+    /// Tangent stiffness `dT/dU = K(P*)/κ` \[N/m\], if T goes on at constant load as it went; 0 where the whole contact
+    /// slips.
     pub tangential_stiffness: f64,
 }
 

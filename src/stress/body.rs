@@ -10,7 +10,8 @@ use crate::kernel::{Below, KernelOrigin, LayeredBody, Theory};
 use crate::record::LoadingRecord;
 use crate::{Boundary, Error, Grid, InfluenceKernel, StressError};
 
-/// An elastic half-space, or a [`LayeredBody`], under the cells of a grid, whose stresses under any pressure are asked for.
+/// An elastic half-space, or a [`LayeredBody`], under the cells of a grid, whose stresses under any pressure are asked
+/// for.
 ///
 /// ```
 /// use asperity::stress::{Measure, Subsurface};
@@ -48,8 +49,9 @@ impl Subsurface {
         Self::with(Domain { grid, boundary, between: Between::Cells }, poissons_ratio)
     }
 
-    /// The body of a kernel: its grid, its boundary, its layers, and what pressure is between the nodes. Layers have Poisson's ratios of their
-    /// own, and the one given does not count. A kernel of your own is taken for a half-space with uniform pressure on each cell.
+    /// The body of a kernel: its grid, its boundary, its layers, and what pressure is between the nodes. Layers have
+    /// Poisson's ratios of their own, and the one given does not count. A kernel of your own is taken for a half-space
+    /// with uniform pressure on each cell.
     ///
     /// # Errors
     ///
@@ -100,8 +102,8 @@ impl Subsurface {
         Ok(Self { domain, poisson, layers: None, friction: (0.0, 0.0) })
     }
 
-    /// The same while it slides: each cell carries a traction of `coefficient` times its pressure as well, in the direction at `angle`
-    /// \[rad\] from x towards y, which is that in which the other body moves over this one.
+    /// The same while it slides: each cell carries a traction of `coefficient` times its pressure as well, in the
+    /// direction at `angle` \[rad\] from x towards y, which is that in which the other body moves over this one.
     ///
     /// The pressure is taken as it is: that traction changes it between unlike bodies is left out.
     ///
@@ -152,12 +154,14 @@ impl Subsurface {
         self.poisson
     }
 
-    /// Stresses below the centres of the cells, on an interface of layers on its upper side, at a depth z ≥ 0 \[m\] under a pressure \[Pa\].
+    /// Stresses below the centres of the cells, on an interface of layers on its upper side, at a depth z ≥ 0 \[m\]
+    /// under a pressure \[Pa\].
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a depth that is negative or not finite, and for layers or depths below them that are thinner than a fifth of a
-    /// cell where the grid repeats; [`StressError::InRigidBase`]; [`Error::GridMismatch`] and [`Error::FieldNotFinite`] for the pressure.
+    /// [`Error::OutOfRange`] for a depth that is negative or not finite, and for layers or depths below them that are
+    /// thinner than a fifth of a cell where the grid repeats; [`StressError::InRigidBase`]; [`Error::GridMismatch`] and
+    /// [`Error::FieldNotFinite`] for the pressure.
     pub fn at_depth(&self, pressure: &DMatrix<f64>, depth: f64) -> Result<StressField, Error> {
         let (along_x, along_y) = self.friction;
         let no = DMatrix::zeros(0, 0);
@@ -165,8 +169,8 @@ impl Subsurface {
         self.under_loads(depth, pressure, &traction(along_x), &traction(along_y))
     }
 
-    /// The same under a pressure and tractions on the body along x and along y \[Pa\], as of partial slip. Friction as by
-    /// [`sliding`](Self::sliding) is not added.
+    /// The same under a pressure and tractions on the body along x and along y \[Pa\], as of partial slip. Friction as
+    /// by [`sliding`](Self::sliding) is not added.
     ///
     /// # Errors
     ///

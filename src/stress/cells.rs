@@ -10,7 +10,8 @@ pub(super) type Stresses = [f64; COMPONENTS];
 /// Rows whose corners are computed together.
 const ROWS: usize = 8;
 
-/// Responses at offsets of 0 ≤ i < nx and 0 ≤ j < ny cells, i fastest, summed over `depths` with their weights. Lengths are in any unit.
+/// Responses at offsets of 0 ≤ i < nx and 0 ≤ j < ny cells, i fastest, summed over `depths` with their weights. Lengths
+/// are in any unit.
 pub(super) fn rectangles(
     (nx, ny): (usize, usize),
     (dx, dy): (f64, f64),

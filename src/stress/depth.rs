@@ -15,8 +15,8 @@ pub(super) enum Depth {
 impl Depth {
     /// What responses at 1, 2, … let expect at the depth z.
     ///
-    /// Far from a load its response varies with depth over as much as the distance is: at a distance of r the error is some
-    /// 10! × 10 / r¹², and beyond [`REACH`](Self::REACH) nothing.
+    /// Far from a load its response varies with depth over as much as the distance is: at a distance of r the error is
+    /// some 10! × 10 / r¹², and beyond [`REACH`](Self::REACH) nothing.
     pub(super) fn extrapolated(z: f64) -> Self {
         let weights = std::array::from_fn(|k| {
             let own = (k + 1) as f64;

@@ -8,11 +8,12 @@ use crate::convolution::{Convolution, Parity};
 use crate::kernel::Below;
 use crate::{Boundary, Error, Grid};
 
-/// Periods between the grid and its image across, in the periodic kernel that one which repeats along a side is made from: waves that vary
-/// along it fade as exp(−2π|y|/L).
+/// Periods between the grid and its image across, in the periodic kernel that one which repeats along a side is made
+/// from: waves that vary along it fade as exp(−2π|y|/L).
 const APART: f64 = 5.0;
 
-/// Where a layer, or a depth below it, is thinner than this, in long sides of a cell, too many waves look alike on a grid that repeats.
+/// Where a layer, or a depth below it, is thinner than this, in long sides of a cell, too many waves look alike on a
+/// grid that repeats.
 const THIN: f64 = 0.2;
 
 /// Where the load is, and how it is spread.
@@ -228,7 +229,8 @@ impl Near {
 
 /// Of a grid that repeats along x alone, at offsets of a period along x and at those that are not negative across.
 ///
-/// What varies along x fades across, and is that of a grid that repeats there too, at a distance. What does not is that of strips.
+/// What varies along x fades across, and is that of a grid that repeats there too, at a distance. What does not is that
+/// of strips.
 fn along_x(grid: &Grid, response: &Response, z: f64) -> Result<Vec<Stresses>, Error> {
     let (nx, ny) = grid.shape();
     let (dx, dy) = (grid.dx(), grid.dy());

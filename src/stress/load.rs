@@ -17,12 +17,12 @@ pub(super) enum Load {
     AlongY,
 }
 
-/// The stresses under a wave of a load of 1: for each component up to two products of cosines with their factors a and b of
-/// (a + b q z) e^(−q z).
+/// The stresses under a wave of a load of 1: for each component up to two products of cosines with their factors a and
+/// b of (a + b q z) e^(−q z).
 ///
-/// Under pressure they are those of Boussinesq, with $`\sigma_{xx} = -[2 \nu + (1 - 2 \nu - q z)\, c_x^2]\, e^{-q z}`$; under traction along x,
-/// of Cerruti, $`\sigma_{xx} = i\, [(2 - q z)\, c_x + (2 \nu + q z)\, c_x c_y^2]\, e^{-q z}`$. Both follow from Airy's function in the plane of
-/// the wave, and from antiplane shear across it.
+/// Under pressure they are those of Boussinesq, with $`\sigma_{xx} = -[2 \nu + (1 - 2 \nu - q z)\, c_x^2]\, e^{-q z}`$;
+/// under traction along x, of Cerruti, $`\sigma_{xx} = i\, [(2 - q z)\, c_x + (2 \nu + q z)\, c_x c_y^2]\, e^{-q z}`$.
+/// Both follow from Airy's function in the plane of the wave, and from antiplane shear across it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Response {
     load: Load,
@@ -120,8 +120,8 @@ pub(super) fn transposed(component: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// On the surface a wave has the traction of the load, and nothing else; below, it is in equilibrium, and compatible: the trace, which
-    /// is 2(1 + ν) times something harmonic, fades as e^(−qz).
+    /// On the surface a wave has the traction of the load, and nothing else; below, it is in equilibrium, and
+    /// compatible: the trace, which is 2(1 + ν) times something harmonic, fades as e^(−qz).
     #[test]
     fn waves_are_in_equilibrium() {
         for nu in [-0.4, 0.0, 0.3, 0.5] {
@@ -144,7 +144,8 @@ mod tests {
                 for (found, expected) in [xz, yz, zz].into_iter().zip(expected) {
                     assert!((found - expected).abs() < 1e-15, "{load:?} {found} {expected}");
                 }
-                // Odd components are i times real ones: i q on an odd one gives −q, on an even one i q, whose i goes with that of the odd ones.
+                // Odd components are i times real ones: i q on an odd one gives −q, on an even one i q, whose i goes
+                // with that of the odd ones.
                 let h = 1e-4;
                 let slope = |c: usize, z: f64| (at(z + h)[c] - at(z - h)[c]) / (2.0 * h);
                 let across = |c: usize| if response.parity(c) == Parity::Odd { -1.0 } else { 1.0 };

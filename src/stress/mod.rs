@@ -32,14 +32,16 @@
 //!
 //! # Conventions
 //!
-//! Tension is positive. x and y run along the surface, z into the body; stresses are those below the centres of the cells. Pressure is
-//! uniform on each cell, unless the kernel is one of [waves](crate::Spectral). On the interface of two layers stresses are those of the upper. The page `docs/stress_below_the_surface.md` says what the
-//! stresses mean and what they were compared with.
+//! Tension is positive. x and y run along the surface, z into the body; stresses are those below the centres of the
+//! cells. Pressure is uniform on each cell, unless the kernel is one of [waves](crate::Spectral). On the interface of
+//! two layers stresses are those of the upper. The page `docs/stress_below_the_surface.md` says what the stresses mean
+//! and what they were compared with.
 //!
 //! # References
 //!
-//! A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377, for rectangles under pressure; K. L. Johnson, *Contact Mechanics*, §3.2 and
-//! §3.6, for point forces; S. Liu & Q. Wang, J. Tribol. 124 (2002) 36, for stresses by fast Fourier transform.
+//! A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377, for rectangles under pressure; K. L. Johnson, *Contact
+//! Mechanics*, §3.2 and §3.6, for point forces; S. Liu & Q. Wang, J. Tribol. 124 (2002) 36, for stresses by fast
+//! Fourier transform.
 
 mod body;
 mod cells;

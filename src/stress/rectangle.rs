@@ -6,8 +6,9 @@
 //! (a + b\, q z)\, e^{-q z}\, c(\mathbf q / q)
 //! ```
 //!
-//! with a product c of direction cosines, times i if their number is odd. Of each c there is a function G(x, y) at the depth z whose mixed
-//! derivative ∂²G/∂x∂y has the transform $`c\, e^{-q z}`$, so that differences of G between corners are integrals over rectangles:
+//! with a product c of direction cosines, times i if their number is odd. Of each c there is a function G(x, y) at the
+//! depth z whose mixed derivative ∂²G/∂x∂y has the transform $`c\, e^{-q z}`$, so that differences of G between corners
+//! are integrals over rectangles:
 //!
 //! ```math
 //! \begin{array}{ll}
@@ -54,8 +55,8 @@ impl Values {
         a * self.plain[place] + b * self.deep[place]
     }
 
-    /// G of all products at the corner (x, y), which lies on neither axis, seen from the depth z ≥ 0. Lengths are in one unit, which
-    /// changes nothing between corners.
+    /// G of all products at the corner (x, y), which lies on neither axis, seen from the depth z ≥ 0. Lengths are in
+    /// one unit, which changes nothing between corners.
     pub(super) fn at_corner(x: f64, y: f64, z: f64) -> Self {
         let (xx, yy, zz) = (x * x, y * y, z * z);
         let rho = (xx + yy + zz).sqrt();
@@ -95,7 +96,8 @@ impl Values {
         Self { plain, deep }
     }
 
-    /// Adds the products themselves for a wave along (cx, cy), times the sums `plain` of $`e^{-q z}`$ and `deep` of $`q z\, e^{-q z}`$.
+    /// Adds the products themselves for a wave along (cx, cy), times the sums `plain` of $`e^{-q z}`$ and `deep` of $`q
+    /// z\, e^{-q z}`$.
     pub(super) fn add_wave(&mut self, (cx, cy): (f64, f64), (plain, deep): (f64, f64)) {
         let products = [1.0, cx, cy, cx * cx, cx * cy, cx * cy * cy, cx * cx * cy];
         for (place, c) in products.into_iter().enumerate() {
@@ -109,8 +111,8 @@ impl Values {
 mod tests {
     use super::*;
 
-    /// Mixed derivatives of G beside what they should be, from the potentials of Boussinesq and Cerruti: derivatives of 1/ϱ, ln (ϱ + z) and
-    /// z ln (ϱ + z) − ϱ, taken by central differences.
+    /// Mixed derivatives of G beside what they should be, from the potentials of Boussinesq and Cerruti: derivatives of
+    /// 1/ϱ, ln (ϱ + z) and z ln (ϱ + z) − ϱ, taken by central differences.
     #[test]
     fn corners_integrate_derivatives_of_potentials() {
         let rho = |x: f64, y: f64, z: f64| (x * x + y * y + z * z).sqrt();
@@ -159,7 +161,8 @@ mod tests {
                     let along_x = |x: f64, y: f64, z: f64| dx(f, x, y, z);
                     dy(&along_x, x, y, z)
                 };
-                // Differences err by h² times fifth derivatives, which are some hundreds at these distances, and by rounding over h³.
+                // Differences err by h² times fifth derivatives, which are some hundreds at these distances, and by
+                // rounding over h³.
                 let (found, wanted) = (mixed(&plain), expected(x, y, z));
                 assert!((found - wanted).abs() < 3e-4, "{cosines:?} {x} {y} {z}: {found} {wanted}");
                 let (found, wanted) = (mixed(&deep), -z * dz(expected, x, y, z));

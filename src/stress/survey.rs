@@ -59,7 +59,8 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// The greatest value of a measure at any of the depths. Between chosen depths it has been looked for: see [`Subsurface::survey`].
+    /// The greatest value of a measure at any of the depths. Between chosen depths it has been looked for: see
+    /// [`Subsurface::survey`].
     #[must_use]
     pub fn greatest(&self, measure: Measure) -> Greatest {
         let all = self.depths.iter().map(|depth| depth.greatest(measure));
@@ -88,12 +89,14 @@ const LEAST: f64 = 0.1;
 const REFINED: usize = 3;
 
 impl Subsurface {
-    /// Depths at which stresses under a pressure are worth looking at \[m\]: the surface, and from a tenth of a cell on by a factor of 1.25
-    /// to the diameter of a circle of the area of the largest patch; of layers their interfaces as well, from both sides.
+    /// Depths at which stresses under a pressure are worth looking at \[m\]: the surface, and from a tenth of a cell on
+    /// by a factor of 1.25 to the diameter of a circle of the area of the largest patch; of layers their interfaces as
+    /// well, from both sides.
     ///
     /// # Errors
     ///
-    /// [`StressError::NoLoad`](crate::StressError::NoLoad) if there is no pressure; [`Error::GridMismatch`] and [`Error::FieldNotFinite`].
+    /// [`StressError::NoLoad`](crate::StressError::NoLoad) if there is no pressure; [`Error::GridMismatch`] and
+    /// [`Error::FieldNotFinite`].
     pub fn depths(&self, pressure: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
         let grid = self.grid();
         grid.check_finite("pressure", pressure)?;
@@ -139,12 +142,14 @@ impl Subsurface {
         self.interfaces().last().copied().filter(|_| is_rigid).unwrap_or(f64::INFINITY)
     }
 
-    /// The greatest stresses under a pressure at given depths \[m\], or, without any, at [those](Self::depths) that are worth it: as many
-    /// more as are needed until von Mises' and the greatest shear stress fall with depth, and three around the place where each is greatest.
+    /// The greatest stresses under a pressure at given depths \[m\], or, without any, at [those](Self::depths) that are
+    /// worth it: as many more as are needed until von Mises' and the greatest shear stress fall with depth, and three
+    /// around the place where each is greatest.
     ///
     /// # Errors
     ///
-    /// [`StressError::NoLoad`](crate::StressError::NoLoad) without a pressure or a depth, and those of [`Self::at_depth`].
+    /// [`StressError::NoLoad`](crate::StressError::NoLoad) without a pressure or a depth, and those of
+    /// [`Self::at_depth`].
     pub fn survey(&self, pressure: &DMatrix<f64>, depths: Option<&[f64]>) -> Result<Survey, Error> {
         self.survey_with(pressure, depths, |_| Ok(()))
     }
@@ -204,8 +209,8 @@ fn around(depths: &[DepthSurvey], place: usize, measure: Measure) -> Option<[(f6
     Some([at(place.checked_sub(1)?)?, at(place)?, at(place + 1)?])
 }
 
-/// Where a parabola through three points is greatest, of which that in the middle is; not closer to any of them than a twentieth of their
-/// distances, where it would tell nothing.
+/// Where a parabola through three points is greatest, of which that in the middle is; not closer to any of them than a
+/// twentieth of their distances, where it would tell nothing.
 fn vertex((a, fa): (f64, f64), (b, fb): (f64, f64), (c, fc): (f64, f64)) -> f64 {
     let (left, right) = (b - a, c - b);
     let (rise, fall) = (fb - fa, fb - fc);

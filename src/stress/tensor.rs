@@ -9,7 +9,8 @@ use crate::parallel::for_each_chunk;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Measure {
-    /// Von Mises' equivalent stress, $`\sqrt{\tfrac12 [(\sigma_1 - \sigma_2)^2 + (\sigma_2 - \sigma_3)^2 + (\sigma_3 - \sigma_1)^2]}`$.
+    /// Von Mises' equivalent stress, $`\sqrt{\tfrac12 [(\sigma_1 - \sigma_2)^2 + (\sigma_2 - \sigma_3)^2 + (\sigma_3 -
+    /// \sigma_1)^2]}`$.
     VonMises,
     /// Tresca's, the difference σ₁ − σ₃ of the greatest and the least principal stress.
     Tresca,
@@ -94,8 +95,9 @@ impl Stress {
         }
     }
 
-    /// Whether a measure may exceed its greatest value so far, in the order of [`Measure::ALL`]. With von Mises' stress s the difference of
-    /// principal stresses is at most 2s/√3, and the greatest of them at most 2s/3 above their mean: most nodes need no principal stresses.
+    /// Whether a measure may exceed its greatest value so far, in the order of [`Measure::ALL`]. With von Mises' stress
+    /// s the difference of principal stresses is at most 2s/√3, and the greatest of them at most 2s/3 above their mean:
+    /// most nodes need no principal stresses.
     fn may_exceed(&self, [von_mises, tresca, _, tension]: [f64; 4]) -> bool {
         // More than all roundings.
         const MORE: f64 = 1.0 + 1e-9;

@@ -19,15 +19,16 @@ const MEASURES: [Measure; 3] =
 const TENSOR: [usize; 6] = [0, 1, 2, 5, 3, 4];
 
 impl Subsurface {
-    /// Writes the stresses at `count` depths, 0, `step`, 2 `step` and so on \[m\], as image data of VTK (`.vti`, single precision): the points
-    /// are the centres of the cells, z is the depth, and each has `von_mises`, `greatest_shear`, `greatest_tension` and the tensor `stress`
-    /// (xx, yy, zz, xy, yz, xz) \[Pa\].
+    /// Writes the stresses at `count` depths, 0, `step`, 2 `step` and so on \[m\], as image data of VTK (`.vti`, single
+    /// precision): the points are the centres of the cells, z is the depth, and each has `von_mises`, `greatest_shear`,
+    /// `greatest_tension` and the tensor `stress` (xx, yy, zz, xy, yz, xz) \[Pa\].
     ///
     /// Memory is that of one depth; `visit` sees each field as it is found, from the surface down.
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the step and the count, those of [`at_depth`](Self::at_depth), and [`FileError::Io`](crate::FileError::Io).
+    /// [`Error::NotPositive`] for the step and the count, those of [`at_depth`](Self::at_depth), and
+    /// [`FileError::Io`](crate::FileError::Io).
     pub fn write_volume(
         &self,
         pressure: &DMatrix<f64>,

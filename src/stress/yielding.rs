@@ -26,11 +26,12 @@ impl FirstYield {
 const TRIALS: usize = 60;
 
 impl Subsurface {
-    /// The first load at which von Mises' stress reaches `yield_stress` \[Pa\] anywhere in the body; `None` if the path ends before. `path` is
-    /// that of `history`.
+    /// The first load at which von Mises' stress reaches `yield_stress` \[Pa\] anywhere in the body; `None` if the path
+    /// ends before. `path` is that of `history`.
     ///
-    /// Found by interpolation between a load at which nothing yields and one at which something does, where the greatest stress goes with a
-    /// power of the load. Should it fall and rise again on the way, it is one of the loads at which it passes the yield stress.
+    /// Found by interpolation between a load at which nothing yields and one at which something does, where the
+    /// greatest stress goes with a power of the load. Should it fall and rise again on the way, it is one of the loads
+    /// at which it passes the yield stress.
     ///
     /// # Errors
     ///
@@ -84,7 +85,8 @@ impl Subsurface {
     }
 }
 
-/// A load between two, by a power law through both stresses, not closer to either than a tenth of their logarithms' distance.
+/// A load between two, by a power law through both stresses, not closer to either than a tenth of their logarithms'
+/// distance.
 fn between(below: &FirstYield, above: &FirstYield, yield_stress: f64) -> f64 {
     let [low, high] = [below, above].map(|found| libm::log(found.state.contact.load));
     let [from, to] = [below, above].map(|found| libm::log(found.greatest.value));

@@ -45,8 +45,9 @@ pub struct UpdaterReport {
 ///
 /// # Errors
 ///
-/// Those of the updater; [`UpdaterError::UpdaterMismatch`](crate::UpdaterError::UpdaterMismatch) for an answer of the wrong length;
-/// [`UpdaterError::UpdaterWrong`](crate::UpdaterError::UpdaterWrong) for one that differs from the dense answer.
+/// Those of the updater; [`UpdaterError::UpdaterMismatch`](crate::UpdaterError::UpdaterMismatch) for an answer of the
+/// wrong length; [`UpdaterError::UpdaterWrong`](crate::UpdaterError::UpdaterWrong) for one that differs from the dense
+/// answer.
 pub fn check(updater: &mut dyn LinearUpdater, problem: &Problem) -> Result<UpdaterReport, Error> {
     let mut nodes: Vec<usize> = (0..problem.grid().nodes()).collect();
     let gap = problem.initial_gap();

@@ -151,8 +151,8 @@ mod tests {
     use super::*;
     use crate::test_chain;
 
-    /// With node 0 in contact, C = 4 and 1 beside it: nodes 1 and 3 have the Schur complement (4 − 1/4, 0; 0, 4), and the row
-    /// sums 6 − 5/4 and 5.
+    /// With node 0 in contact, C = 4 and 1 beside it: nodes 1 and 3 have the Schur complement (4 − 1/4, 0; 0, 4), and
+    /// the row sums 6 − 5/4 and 5.
     #[test]
     fn complements_of_nodes_in_a_row() -> Result<(), Error> {
         let problem = test_chain::problem(&[0.0, 1.0, 2.0, 3.0])?;

@@ -4,30 +4,30 @@ use super::{Left, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFacto
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
-/// The default: [`RecursiveCholesky`] until the rest of the path is cheaper with [`ConjugateGradient`](super::ConjugateGradient), or its
-/// factor no longer fits the memory budget of the path, and iterations from then on.
-/// No path ends for want of memory for n² numbers, unless the budget is less than iterations take on the grid alone; and full
-/// contact on 512 × 512 nodes takes minutes.
+/// The default: [`RecursiveCholesky`] until the rest of the path is cheaper with
+/// [`ConjugateGradient`](super::ConjugateGradient), or its factor no longer fits the memory budget of the path, and
+/// iterations from then on. No path ends for want of memory for n² numbers, unless the budget is less than iterations
+/// take on the grid alone; and full contact on 512 × 512 nodes takes minutes.
 ///
-/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 1.2 ns for each node of
-/// the grid and 4 ns for each one in contact: both cost the same at some 5900 contact nodes on a grid of
-/// 128², 6400 on 256², 8000 on 512², and 12 700 on 1024². There the factor is given up if all that is left of the path, the first solution
-/// without a factor included, takes four fifths of the time or less. A path that ends soon behind that number of nodes keeps
-/// its factor: a tenth of 256² is exact to rounding. The end is the target; a load, an approach or a mean gap is taken for about the number
-/// of nodes that load and stiffness of the present state give. These are constants and not measurements, so that a path is the
-/// same on every run. The budget is that of
+/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 1.2 ns for each node of the
+/// grid and 4 ns for each one in contact: both cost the same at some 5900 contact nodes on a grid of 128², 6400 on
+/// 256², 8000 on 512², and 12 700 on 1024². There the factor is given up if all that is left of the path, the first
+/// solution without a factor included, takes four fifths of the time or less. A path that ends soon behind that number
+/// of nodes keeps its factor: a tenth of 256² is exact to rounding. The end is the target; a load, an approach or a
+/// mean gap is taken for about the number of nodes that load and stiffness of the present state give. These are
+/// constants and not measurements, so that a path is the same on every run. The budget is that of
 /// [`LoadingBuilder::memory_budget`](crate::loading::LoadingBuilder::memory_budget).
 ///
-/// With a [hardness](crate::loading::LoadingBuilder::hardness) n counts elastic nodes only, which the factor holds: in metals these are so few
-/// that it stays as a rule.
+/// With a [hardness](crate::loading::LoadingBuilder::hardness) n counts elastic nodes only, which the factor holds: in
+/// metals these are so few that it stays as a rule.
 ///
-/// On periodic cells that are [too long](super::ConjugateGradient::MAX_ASPECT) for iterations the factor stays as long as it fits
-/// the budget.
+/// On periodic cells that are [too long](super::ConjugateGradient::MAX_ASPECT) for iterations the factor stays as long
+/// as it fits the budget.
 ///
 /// Events are the same before and after; before, states are exact to rounding, and after it as
 /// [`loading`](crate::loading) says. A message of the level `info` goes to the crate `log`, and
-/// [`LoadingPath::handed_over_at`](crate::LoadingPath::handed_over_at) says where it was. For a path exact to rounding whatever
-/// it costs, take [`RecursiveCholesky`] itself.
+/// [`LoadingPath::handed_over_at`](crate::LoadingPath::handed_over_at) says where it was. For a path exact to rounding
+/// whatever it costs, take [`RecursiveCholesky`] itself.
 ///
 /// ```
 /// use asperity::surface::Paraboloid;

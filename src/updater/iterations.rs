@@ -1,4 +1,5 @@
-//! Iterations on the contact of a path: approximate Schur complements, and solutions that are as exact as the path needs them.
+//! Iterations on the contact of a path: approximate Schur complements, and solutions that are as exact as the path
+//! needs them.
 
 use std::fmt::Debug;
 
@@ -51,10 +52,11 @@ impl<'a> Behind<'a> {
 /// What iterations say of proposed nodes.
 #[derive(Debug, Default)]
 pub(crate) struct Proposal {
-    /// Displacement under the solution and under its rate of each node out of contact; pressure and rate of each in contact.
+    /// Displacement under the solution and under its rate of each node out of contact; pressure and rate of each in
+    /// contact.
     pub(crate) lines: Vec<[f64; 2]>,
-    /// What a pressure on a node out of contact, or a gap of one in it, adds to sums over all nodes: of gaps out of contact, of plastic
-    /// depths, and of these times the hardness.
+    /// What a pressure on a node out of contact, or a gap of one in it, adds to sums over all nodes: of gaps out of
+    /// contact, of plastic depths, and of these times the hardness.
     pub(crate) sums: Vec<[f64; 3]>,
 }
 
@@ -72,7 +74,8 @@ pub(crate) trait Iterations: Debug + Send + Sync {
         solution: &Solution,
     ) -> Result<(), Error>;
 
-    /// What later answers depend on, besides problem and contact, as plain numbers: at the end of a window, and if that can be told.
+    /// What later answers depend on, besides problem and contact, as plain numbers: at the end of a window, and if that
+    /// can be told.
     fn keep(&self, problem: &Problem, contact: &ContactSequence) -> Option<Kept> {
         let _ = (problem, contact);
         None
@@ -89,9 +92,10 @@ pub(crate) trait Iterations: Debug + Send + Sync {
         Ok(false)
     }
 
-    /// Approximates the matrix M of [`LinearUpdater::watch_both`](super::LinearUpdater::watch_both) of nodes out of contact and nodes in
-    /// it, which may yield, and improves what the last solution and its rate say of them: by what the residual of the solution tells.
-    /// Without yielded nodes `beside` and nodes in contact it is a Schur complement.
+    /// Approximates the matrix M of [`LinearUpdater::watch_both`](super::LinearUpdater::watch_both) of nodes out of
+    /// contact and nodes in it, which may yield, and improves what the last solution and its rate say of them: by what
+    /// the residual of the solution tells. Without yielded nodes `beside` and nodes in contact it is a Schur
+    /// complement.
     fn propose(
         &mut self,
         problem: &Problem,
@@ -101,22 +105,25 @@ pub(crate) trait Iterations: Debug + Send + Sync {
         schur: &mut Schur,
     ) -> Result<Proposal, Error>;
 
-    /// How the contact answers the nodes that were proposed last, nearly: for each of them nodes in contact near it, and what a unit
-    /// pressure takes off them. Nothing if the iterations cannot tell: then no window is made where nodes may leave.
+    /// How the contact answers the nodes that were proposed last, nearly: for each of them nodes in contact near it,
+    /// and what a unit pressure takes off them. Nothing if the iterations cannot tell: then no window is made where
+    /// nodes may leave.
     fn answers(&self) -> Vec<(&[u32], &[f64])> {
         Vec::new()
     }
 
-    /// Solves on the whole contact, which nodes may have left since the last time, and stays there. The rate is so exact that the solution
-    /// keeps its tolerance over the span \[m\] that the approach goes on with it; an infinite span asks for a rate exact to rounding.
+    /// Solves on the whole contact, which nodes may have left since the last time, and stays there. The rate is so
+    /// exact that the solution keeps its tolerance over the span \[m\] that the approach goes on with it; an infinite
+    /// span asks for a rate exact to rounding.
     fn advance(&mut self, behind: &Behind<'_>, span: f64, solved: &mut Solved)
     -> Result<(), Error>;
 
-    /// Pressures, and displacements of all nodes, at a state between the last two solutions: those of nodes that have been proposed to an
-    /// error of gaps \[m\] or the tolerance, whichever is greater. No rates.
+    /// Pressures, and displacements of all nodes, at a state between the last two solutions: those of nodes that have
+    /// been proposed to an error of gaps \[m\] or the tolerance, whichever is greater. No rates.
     fn probe(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error>;
 
-    /// Solves on the first `count` nodes as exactly as iterations go. The solution that the path goes on with is left as it is.
+    /// Solves on the first `count` nodes as exactly as iterations go. The solution that the path goes on with is left
+    /// as it is.
     fn solve_apart(
         &mut self,
         problem: &Problem,

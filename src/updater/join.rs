@@ -40,8 +40,8 @@ mod tests {
     use crate::test_chain;
     use crate::updater::Dense;
 
-    /// 300 nodes join in blocks of 256 and 44: of a dense updater 16 (256 + 256)² bytes and then 16 (300 + 44)², with 16 · 256²
-    /// and 16 · 44² for the window.
+    /// 300 nodes join in blocks of 256 and 44: of a dense updater 16 (256 + 256)² bytes and then 16 (300 + 44)², with
+    /// 16 · 256² and 16 · 44² for the window.
     #[test]
     fn contacts_join_within_a_budget() -> Result<(), Error> {
         let problem = test_chain::problem(&[0.0; 300])?;

@@ -3,9 +3,9 @@
 /// Everything on which later answers of iterations depend, besides the problem and the contact: whoever
 /// [restores](super::Iterations::restore) it gets the same answers, bit for bit.
 ///
-/// Left out is what follows from this: the sparse part of the preconditioner and the local solutions, which are functions of
-/// the contact; displacements of search directions; and what a window makes for itself alone, the solution where it began
-/// and its instants.
+/// Left out is what follows from this: the sparse part of the preconditioner and the local solutions, which are
+/// functions of the contact; displacements of search directions; and what a window makes for itself alone, the solution
+/// where it began and its instants.
 ///
 /// Values on the contact are in the order of the indices of its nodes.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,18 +19,19 @@ pub(crate) struct Kept {
     /// Pressures \[Pa\], and their rates.
     pub load: KeptField,
     pub rate: KeptField,
-    /// The nodes that were proposed last, how many were in contact then, and what that left of their row sums: with them the
-    /// path follows row sums, and improves solutions.
+    /// The nodes that were proposed last, how many were in contact then, and what that left of their row sums: with
+    /// them the path follows row sums, and improves solutions.
     pub proposed: Vec<usize>,
     pub proposed_beside: usize,
     pub row_sums: Vec<f64>,
-    /// Row sums with the contact eliminated, unless the half-space is periodic: for how many nodes they were solved, the solution, and the start of
-    /// the next one on the contact. They are solved for when they are stale, so that they depend on the windows before.
+    /// Row sums with the contact eliminated, unless the half-space is periodic: for how many nodes they were solved,
+    /// the solution, and the start of the next one on the contact. They are solved for when they are stale, so that
+    /// they depend on the windows before.
     pub sums_of: usize,
     pub sums: KeptField,
     pub sums_start: Vec<f64>,
-    /// The search directions of the last solution, which serve the row sums as well; with the number of those that are kept for that, and
-    /// of those that are not looked back at.
+    /// The search directions of the last solution, which serve the row sums as well; with the number of those that are
+    /// kept for that, and of those that are not looked back at.
     pub directions: Vec<Vec<f32>>,
     pub marks: [usize; 2],
     /// The contact for which the coarse matrix of the preconditioner was computed: it serves until enough has changed.
@@ -48,11 +49,11 @@ pub(crate) struct KeptBeside {
     /// The nodes that have yielded since they were proposed, and their pressures \[Pa\].
     pub yielded: Vec<usize>,
     pub pressures: Vec<f64>,
-    /// What sums over all nodes answer on the contact and these nodes, by node index: gaps out of contact, plastic depths, and these times
-    /// the hardness.
+    /// What sums over all nodes answer on the contact and these nodes, by node index: gaps out of contact, plastic
+    /// depths, and these times the hardness.
     pub sums: [KeptField; 3],
-    /// The displacements that these belong to: under a pressure of 1 on all nodes that had yielded then \[m/Pa\], and under their hardness
-    /// \[m\].
+    /// The displacements that these belong to: under a pressure of 1 on all nodes that had yielded then \[m/Pa\], and
+    /// under their hardness \[m\].
     pub under: [Vec<f64>; 2],
 }
 

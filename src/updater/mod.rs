@@ -189,9 +189,9 @@ pub trait LinearUpdater: Any + Send + Sync {
         factor: &WindowFactor,
     ) -> Result<(), Error>;
 
-    /// Solves on the first `count` nodes of `contact` at an approach δ \[m\], in the gauge of the kernel: on all nodes while
-    /// the path advances, on fewer for an earlier state. Later answers must not depend on such a call. A path begins with a
-    /// solution on no node, a `count` of 0: pressures and rates are empty then.
+    /// Solves on the first `count` nodes of `contact` at an approach δ \[m\], in the gauge of the kernel: on all nodes
+    /// while the path advances, on fewer for an earlier state. Later answers must not depend on such a call. A path
+    /// begins with a solution on no node, a `count` of 0: pressures and rates are empty then.
     ///
     /// A path checks the answer: if it does not close the gaps in contact to rounding, the path ends with
     /// [`UpdaterError::ContactNotClosed`].
@@ -220,9 +220,9 @@ pub trait LinearUpdater: Any + Send + Sync {
         Err(UpdaterError::TruncateNotSupported { nodes }.into())
     }
 
-    /// Forgets nodes that left the contact, by their positions in it, ascending: `contact` is without them already, and initial
-    /// gap and row sums of `problem` may be others than before. No node is watched afterwards. Called only if a pressure falls to
-    /// zero, which takes a kernel of unknown growth, or rises to a hardness.
+    /// Forgets nodes that left the contact, by their positions in it, ascending: `contact` is without them already, and
+    /// initial gap and row sums of `problem` may be others than before. No node is watched afterwards. Called only if a
+    /// pressure falls to zero, which takes a kernel of unknown growth, or rises to a hardness.
     ///
     /// # Errors
     ///
@@ -242,17 +242,17 @@ pub trait LinearUpdater: Any + Send + Sync {
         Err(UpdaterError::ReleaseNotSupported { ix, iy }.into())
     }
 
-    /// Eliminates the contact I from the system bordered by nodes P out of contact and by the nodes Q at some positions of it,
-    /// ascending, which may yield:
+    /// Eliminates the contact I from the system bordered by nodes P out of contact and by the nodes Q at some positions
+    /// of it, ascending, which may yield:
     ///
     /// ```math
     /// M = \begin{pmatrix} C_{PP} & 0 \\ 0 & 0 \end{pmatrix} -
     ///     \begin{pmatrix} C_{PI} \\ E_Q^T \end{pmatrix} C_{II}^{-1} \begin{pmatrix} C_{IP} & E_Q \end{pmatrix}
     /// ```
     ///
-    /// with the unit vectors $`E_Q`$ of these positions. M says what pressures on P and overlaps of Q change: gaps of P, and
-    /// pressures of Q. Only its lower triangle need be written, and no row sums. Called only on paths with a hardness.
-    /// [`join`](Self::join) may follow, for some of P.
+    /// with the unit vectors $`E_Q`$ of these positions. M says what pressures on P and overlaps of Q change: gaps of
+    /// P, and pressures of Q. Only its lower triangle need be written, and no row sums. Called only on paths with a
+    /// hardness. [`join`](Self::join) may follow, for some of P.
     ///
     /// # Errors
     ///
@@ -269,7 +269,8 @@ pub trait LinearUpdater: Any + Send + Sync {
         Err(UpdaterError::HardnessNotSupported.into())
     }
 
-    /// Makes right-hand sides b, two for each node in contact, into $`C_{II}^{-1} b`$. Called only on paths with a hardness.
+    /// Makes right-hand sides b, two for each node in contact, into $`C_{II}^{-1} b`$. Called only on paths with a
+    /// hardness.
     ///
     /// # Errors
     ///

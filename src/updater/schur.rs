@@ -147,8 +147,8 @@ mod tests {
         Ok(())
     }
 
-    /// Sums of products of small integers are exact. Sizes are those of a part of a tile, of several, and of so many that
-    /// threads share them.
+    /// Sums of products of small integers are exact. Sizes are those of a part of a tile, of several, and of so many
+    /// that threads share them.
     #[test]
     fn products_of_columns_are_added() -> Result<(), Error> {
         for size in [0, 1, 5, TILE, 2 * TILE + 12, PARALLEL + 1] {

@@ -194,7 +194,8 @@ impl WindowFactor {
         }
     }
 
-    /// Subtracts the events from the whole Schur complement, from which they have been subtracted in part. No event can follow.
+    /// Subtracts the events from the whole Schur complement, from which they have been subtracted in part. No event can
+    /// follow.
     pub(crate) fn finish(&mut self, schur: &mut Schur) {
         let mut rest = &self.factor[self.subtracted * self.watched..];
         for equal in self.signs[self.subtracted..].chunk_by(|a, b| a == b) {
@@ -333,7 +334,8 @@ mod tests {
         assert_eq!(first, [[2.0]]);
     }
 
-    /// After any number of events, in blocks and beside them, the Schur complement is that of the nodes that have not touched; once.
+    /// After any number of events, in blocks and beside them, the Schur complement is that of the nodes that have not
+    /// touched; once.
     #[test]
     fn all_events_are_subtracted_in_the_end() {
         let order: Vec<usize> = (0..WATCHED).map(|t| (t * 29 + 5) % WATCHED).collect();

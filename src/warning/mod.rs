@@ -10,8 +10,8 @@ use crate::patches::{Connectivity, ContactEdge, Patches};
 use crate::surface::{self, Topography};
 use crate::{Boundary, Error, Grid};
 
-/// Something that a person should look at: most often a unit that was mistaken, or a grid that is too coarse. Nothing is refused
-/// because of it.
+/// Something that a person should look at: most often a unit that was mistaken, or a grid that is too coarse. Nothing
+/// is refused because of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -75,30 +75,32 @@ pub enum Warning {
     },
 }
 
-/// By how much the counted contact area may exceed the corrected one: a patch of some 15 nodes does. On balls at eight places
-/// between the nodes the counted area was 21 % too large on average, and up to 42 %, with 12 to 15 nodes in contact; 13 % and
-/// 32 % with 16 to 23; 8 % and 17 % with 32 to 47.
+/// By how much the counted contact area may exceed the corrected one: a patch of some 15 nodes does. On balls at eight
+/// places between the nodes the counted area was 21 % too large on average, and up to 42 %, with 12 to 15 nodes in
+/// contact; 13 % and 32 % with 16 to 23; 8 % and 17 % with 32 to 47.
 const EXCESS: f64 = 0.15;
 /// The same of a single patch, all of whose figures depend on it: one of some 50 nodes.
 const EXCESS_OF_ONE: f64 = 0.08;
-/// Pressure over composite modulus: metals yield at a hardness of some 0.01 to 0.03, and polymers at 0.047 (PTFE) to 0.072 (PMMA).
+/// Pressure over composite modulus: metals yield at a hardness of some 0.01 to 0.03, and polymers at 0.047 (PTFE) to
+/// 0.072 (PMMA).
 const METALS: f64 = 0.02;
 const POLYMERS: f64 = 0.05;
 /// Rounding of a pressure, relative to the hardness.
 const SAME_HARDNESS: f64 = 1e-6;
-/// Metals, glass and ceramics are stiffer than this, polymers are softer, and rubber, which does not yield, is softer than the
-/// second \[Pa\].
+/// Metals, glass and ceramics are stiffer than this, polymers are softer, and rubber, which does not yield, is softer
+/// than the second \[Pa\].
 const SOFTEST_METAL: f64 = 1e10;
 const SOFTEST_POLYMER: f64 = 1e8;
 /// A layer is like another if its modulus is at most so many times as large, and at least so many times as small.
 const LIKE: f64 = 2.0;
-/// The hardness of solids over their composite modulus, from annealed metals to polymers and ceramics, with a wide margin below.
+/// The hardness of solids over their composite modulus, from annealed metals to polymers and ceramics, with a wide
+/// margin below.
 const HARDNESSES: std::ops::RangeInclusive<f64> = 1e-5..=0.3;
 /// Moduli of solids lie between that of soft rubber and that of diamond \[Pa\].
 const SOLIDS: std::ops::RangeInclusive<f64> = 1e6..=2e12;
-/// Pressure drop over mean pressure. Half of the drop, its mean, takes load off the contact. Leak rates fall as the second power
-/// of the load far from the closing of the last channel and as the twentieth power near it, so that a fiftieth changes
-/// them by 2 to 20 %.
+/// Pressure drop over mean pressure. Half of the drop, its mean, takes load off the contact. Leak rates fall as the
+/// second power of the load far from the closing of the last channel and as the twentieth power near it, so that a
+/// fiftieth changes them by 2 to 20 %.
 const DROP: f64 = 0.02;
 
 impl Warning {
@@ -133,9 +135,10 @@ impl Warning {
         Ok(small.into_iter().chain(Self::of_edge(pressure, boundary)).collect())
     }
 
-    /// The surface of a free half-space ends at the border of the grid. On a ball whose contact is cut off there, the greatest
-    /// pressure moves to the border when the radius of the contact is 1.15 times the distance. Until then approach and greatest
-    /// pressure are within 0.2 % of Hertz; at 1.2 times the greatest pressure is 1.4 times that of Hertz, at 1.4 times 2.5 times.
+    /// The surface of a free half-space ends at the border of the grid. On a ball whose contact is cut off there, the
+    /// greatest pressure moves to the border when the radius of the contact is 1.15 times the distance. Until then
+    /// approach and greatest pressure are within 0.2 % of Hertz; at 1.2 times the greatest pressure is 1.4 times that
+    /// of Hertz, at 1.4 times 2.5 times.
     fn of_edge(pressure: &DMatrix<f64>, boundary: Boundary) -> Option<Self> {
         let (nx, ny) = pressure.shape();
         let [repeats_x, repeats_y] = boundary.repeats();
@@ -168,9 +171,10 @@ impl Warning {
         is_soft.then_some(Self::Hardness { hardness, e_star })
     }
 
-    /// Warnings about the layers of a body on a grid whose cells are wider than the coat is thick: down to where the modulus is twice
-    /// or half that of the surface. On a ball, with cells half as wide as the coat, as wide and twice as wide, the greatest pressure
-    /// on a hard coat was 5, 9 and 15 % off, and the stiffness of an incompressible layer on a rigid base 0.5, 2 and 4 %.
+    /// Warnings about the layers of a body on a grid whose cells are wider than the coat is thick: down to where the
+    /// modulus is twice or half that of the surface. On a ball, with cells half as wide as the coat, as wide and twice
+    /// as wide, the greatest pressure on a hard coat was 5, 9 and 15 % off, and the stiffness of an incompressible
+    /// layer on a rigid base 0.5, 2 and 4 %.
     #[must_use]
     pub fn of_layers(body: &LayeredBody, grid: &Grid) -> Option<Self> {
         let modulus = |young: f64, poisson: f64| young / (1.0 - poisson * poisson);
@@ -192,7 +196,8 @@ impl Warning {
         (ends && cell > thickness).then_some(Self::WideCells { cell, thickness })
     }
 
-    /// Warnings about the greatest pressure of an elastic contact, with the typical hardness of the material where it is known.
+    /// Warnings about the greatest pressure of an elastic contact, with the typical hardness of the material where it
+    /// is known.
     #[must_use]
     pub fn of_pressure(pressure: f64, e_star: f64, hardness: Option<f64>) -> Option<Self> {
         let borne = match hardness {
@@ -205,8 +210,8 @@ impl Warning {
         (pressure > borne).then_some(Self::HighPressure { pressure, e_star, hardness })
     }
 
-    /// Warnings about the pressure drop of a fluid that leaks through contacts under these mean pressures \[Pa\]. Without a load
-    /// there is no contact to open.
+    /// Warnings about the pressure drop of a fluid that leaks through contacts under these mean pressures \[Pa\].
+    /// Without a load there is no contact to open.
     #[must_use]
     pub fn of_pressure_drop(
         pressure_drop: f64,

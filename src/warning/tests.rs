@@ -70,7 +70,8 @@ fn peaks_of_the_border_are_noticed() -> Result<(), Error> {
         let on = (&grid, Boundary::Free);
         let found = Warning::of_contact(&solved.fields.pressure, &solved.fields.contact_map, on)?;
         assert_eq!(found.len(), usize::from(is_peak), "{part} {found:?}");
-        // The edge nearly doubles the pressure; inside it is that of Hertz, of a contact that loses a tenth of its load there.
+        // The edge nearly doubles the pressure; inside it is that of Hertz, of a contact that loses a tenth of its load
+        // there.
         for warning in found {
             assert!(warning.to_string().contains("at the border of the grid"), "{warning}");
             let greatest = hertz.max_pressure(approach);
@@ -232,7 +233,8 @@ fn moduli_in_other_units_are_noticed() {
     }
 }
 
-/// Balls at places between the nodes: cells in contact against Hertz. The correction is right on average over such places.
+/// Balls at places between the nodes: cells in contact against Hertz. The correction is right on average over such
+/// places.
 #[test]
 fn contacts_of_few_nodes_are_noticed() -> Result<(), Error> {
     let grid = Grid::square(33, 33.0)?;

@@ -1,4 +1,5 @@
-//! What several studies need: fits, spreads, sections of pages, main functions, the paper's loading path, and where time and memory went.
+//! What several studies need: fits, spreads, sections of pages, main functions, the paper's loading path, and where
+//! time and memory went.
 
 pub mod contact_area;
 pub mod findings;

@@ -63,7 +63,8 @@ impl Section<'_> {
 /// Columns of a line of prose at most.
 const COLUMNS: usize = 120;
 
-/// Text of a page whose paragraphs are one line each, with lines that are not too long. Tables, code, headings and pictures stay.
+/// Text of a page whose paragraphs are one line each, with lines that are not too long. Tables, code, headings and
+/// pictures stay.
 pub fn wrapped(text: &str) -> String {
     let mut fenced = false;
     let lines = text.lines().map(|line| {

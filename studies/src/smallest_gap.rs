@@ -72,11 +72,12 @@ impl EitherPath for LoadingPath {
     }
 }
 
-/// The loading path by the paper's procedure, on a free half-space: the node with the smallest gap at the present state touches next
-/// (its step 4), at the approach at which that gap closes, even if this is smaller than the present one. Each node costs a row of the
-/// factor, a solution and a convolution.
+/// The loading path by the paper's procedure, on a free half-space: the node with the smallest gap at the present state
+/// touches next (its step 4), at the approach at which that gap closes, even if this is smaller than the present one.
+/// Each node costs a row of the factor, a solution and a convolution.
 ///
-/// It is not exact: there are negative pressures, overlaps, and an approach that goes backwards. `docs/theory.md`, section 3, says why.
+/// It is not exact: there are negative pressures, overlaps, and an approach that goes backwards. `docs/theory.md`,
+/// section 3, says why.
 pub struct SmallestGap<U = RecursiveCholesky> {
     problem: Problem,
     updater: U,

@@ -165,8 +165,8 @@ fn the_papers_rule_gives_negative_pressures() {
     }
 }
 
-/// Two nodes that move as one: the gap of the second never closes, and there is no approach at which it touches. The third
-/// has the largest gap, and keeps the mean gap closing.
+/// Two nodes that move as one: the gap of the second never closes, and there is no approach at which it touches. The
+/// third has the largest gap, and keeps the mean gap closing.
 #[test]
 fn a_gap_that_does_not_close_is_no_number() {
     let grid = Grid::new(3, 1, 1.0, 1.0).unwrap();

@@ -1,4 +1,5 @@
-//! A program that knows nothing but this crate: it reads a file of an instrument, prepares the surface and describes it.
+//! A program that knows nothing but this crate: it reads a file of an instrument, prepares the surface and describes
+//! it.
 #![allow(clippy::panic)]
 #![cfg(feature = "io")]
 

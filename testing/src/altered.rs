@@ -101,7 +101,8 @@ type OnBytes<U> = Box<dyn Fn(&U, (usize, usize)) -> usize + Send + Sync>;
 
 /// An updater that passes on all that it is asked, unless a closure does something else.
 ///
-/// What the closures have seen can be told through `state`, of which they then hold a part: an `Arc` of what it counts, for example.
+/// What the closures have seen can be told through `state`, of which they then hold a part: an `Arc` of what it counts,
+/// for example.
 pub struct Altered<U, S = ()> {
     /// What is to be looked at while a path holds the updater.
     pub state: S,

@@ -5,8 +5,8 @@ use asperity::updater::{LinearUpdater, Schur, Solution, WindowFactor};
 use asperity::{Error, Problem};
 use nalgebra::{DMatrix, DVector};
 
-/// An explicit inverse, bordered by one node at a time (paper, eqs. 7-13). It cannot let nodes go: for that it has what the trait
-/// has.
+/// An explicit inverse, bordered by one node at a time (paper, eqs. 7-13). It cannot let nodes go: for that it has what
+/// the trait has.
 #[derive(Debug, Default)]
 pub struct Bordering {
     inverse: DMatrix<f64>,

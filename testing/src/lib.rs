@@ -1,4 +1,5 @@
-//! What tests, drivers and benches of this repository have in common. It uses the public interface of the library alone.
+//! What tests, drivers and benches of this repository have in common. It uses the public interface of the library
+//! alone.
 //!
 //! | module | content |
 //! |---|---|

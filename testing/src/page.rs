@@ -1,6 +1,7 @@
 //! Tables of pages in Markdown.
 
-/// The lines of all tables of a page whose first column has this header, their headers among them, as cells without blanks around them.
+/// The lines of all tables of a page whose first column has this header, their headers among them, as cells without
+/// blanks around them.
 #[must_use]
 pub fn tables(page: &str, header: &str) -> Vec<Vec<String>> {
     let cells = |line: &str| -> Option<Vec<String>> {

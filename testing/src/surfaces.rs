@@ -21,8 +21,8 @@ pub fn rough(grid: &Grid, seed: u64) -> HeightMap {
     self_affine(grid, 0.8, 1e-2 * lx.max(ly), seed)
 }
 
-/// Means over the 3 × 3 neighbours that there are, and a little of the height itself, so that heights stay different on grids of
-/// less than three nodes a side.
+/// Means over the 3 × 3 neighbours that there are, and a little of the height itself, so that heights stay different on
+/// grids of less than three nodes a side.
 #[must_use]
 pub fn smooth(heights: &DMatrix<f64>) -> DMatrix<f64> {
     let (nx, ny) = heights.shape();

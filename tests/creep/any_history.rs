@@ -104,8 +104,8 @@ fn fluid() -> Prony {
     Prony::relaxation(0.0, &[(1.0, 0.4), (0.1, 0.6)]).unwrap()
 }
 
-/// Random loads and approaches, a solid and a fluid: the same nodes at every step, and everything else to the rounding of dense solves
-/// with a condition number of some 10² (measured: pressures 2·10⁻¹³, scalars 10⁻¹⁵).
+/// Random loads and approaches, a solid and a fluid: the same nodes at every step, and everything else to the rounding
+/// of dense solves with a condition number of some 10² (measured: pressures 2·10⁻¹³, scalars 10⁻¹⁵).
 #[test]
 fn any_load_and_approach() {
     let kernel = Boussinesq::new(Grid::square(16, 1.0).unwrap(), 1.0).unwrap();
@@ -159,8 +159,8 @@ fn jumps_and_long_steps() {
     assert!(seen.pressure < 1e-10 && seen.scalars < 1e-11, "{seen:?}");
 }
 
-/// A step far too long would bring out negative pressures; it is halved until it does not, and the states are sound: no pressure in
-/// contact is negative, and none is missing.
+/// A step far too long would bring out negative pressures; it is halved until it does not, and the states are sound: no
+/// pressure in contact is negative, and none is missing.
 #[test]
 fn a_step_that_is_too_long_is_halved() {
     let grid = Grid::square(12, 1.0).unwrap();

@@ -24,8 +24,8 @@ fn long_path() -> History {
     states.collect()
 }
 
-/// Times of all events, two hundred states, and the weights of all increments; and a hundred steps of the bed. What it took is printed, and not
-/// tested: a busy machine is no error.
+/// Times of all events, two hundred states, and the weights of all increments; and a hundred steps of the bed. What it
+/// took is printed, and not tested: a busy machine is no error.
 #[test]
 fn a_long_path_is_evaluated_at_once() {
     let history = long_path();

@@ -10,7 +10,8 @@ use proptest::prelude::*;
 
 use crate::stepping::rough;
 
-/// A flat punch: one element, linear. The loss of a standard linear solid in closed form, with the phase of its complex compliance.
+/// A flat punch: one element, linear. The loss of a standard linear solid in closed form, with the phase of its complex
+/// compliance.
 #[test]
 fn a_linear_contact_loses_what_its_compliance_says() {
     let grid = Grid::square(2, 1.0).unwrap();
@@ -120,7 +121,8 @@ proptest! {
     }
 }
 
-/// Energy lost in the last of many cycles of half the load around it, and half the range of the approach in it, step by step.
+/// Energy lost in the last of many cycles of half the load around it, and half the range of the approach in it, step by
+/// step.
 fn stepped(contact: &mut ViscoelasticBed, load: f64, period: f64, cycles: usize) -> (f64, f64) {
     const STEPS: usize = 16;
     let mut before = contact.step(0.0, Control::Load(load)).unwrap();
@@ -141,9 +143,10 @@ fn stepped(contact: &mut ViscoelasticBed, load: f64, period: f64, cycles: usize)
     (lost, 0.5 * (high - low))
 }
 
-/// A default cycle is as near to the steady one as its distance says, which is within the tolerance: also if the period is far below the retardation
-/// times, where a cycle differs little from the one before long before it is steady. The truth are cycles over 16 of the longest time after the mean
-/// load has settled for 40, from a change of some tenths by e^-16 or more.
+/// A default cycle is as near to the steady one as its distance says, which is within the tolerance: also if the period
+/// is far below the retardation times, where a cycle differs little from the one before long before it is steady. The
+/// truth are cycles over 16 of the longest time after the mean load has settled for 40, from a change of some tenths by
+/// e^-16 or more.
 #[test]
 fn a_steady_cycle_is_one() {
     let grid = Grid::square(12, 1.0).unwrap();
@@ -162,8 +165,8 @@ fn a_steady_cycle_is_one() {
     }
 }
 
-/// The same for terms that are up to some thousand periods slow, and for bodies of which little is left: plain cycles are 10⁻³ and more away from the
-/// steady one after a thousand.
+/// The same for terms that are up to some thousand periods slow, and for bodies of which little is left: plain cycles
+/// are 10⁻³ and more away from the steady one after a thousand.
 #[test]
 fn slow_terms_reach_the_steady_cycle() {
     let grid = Grid::square(10, 1.0).unwrap();

@@ -40,8 +40,8 @@ fn fluid() -> Prony {
     Prony::shares(&[(0.1, 0.6), (1.0, 0.4)]).unwrap()
 }
 
-/// A load held, and one that is taken away so slowly that contact grows all the same: contact, approach and mean gap to rounding
-/// whatever the step, and pressures with errors that fall by the square of it.
+/// A load held, and one that is taken away so slowly that contact grows all the same: contact, approach and mean gap to
+/// rounding whatever the step, and pressures with errors that fall by the square of it.
 #[test]
 fn pressures_of_the_solver_converge_to_the_closed_form() {
     let mut case = free();
@@ -199,7 +199,8 @@ fn loads_relax_at_a_given_approach() {
         assert_eq!(held.pressure(time, 1).unwrap().pieces().len(), 1);
         assert!((pressure.load() / expected - 1.0).abs() < 1e-13);
     }
-    // First apart, then in contact, with a jump; at the end between two events, so that both sides count the same nodes.
+    // First apart, then in contact, with a jump; at the end between two events, so that both sides count the same
+    // nodes.
     let between = 0.5 * (approach + bed.approaches()[61]);
     let corners = [
         (0.0, -approach),
@@ -332,8 +333,8 @@ fn the_end_of_the_path_has_a_time() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
-    /// Where contact recedes: the effective load grows up to there, and falls behind it; the rate of a fine search finds no
-    /// earlier fall. Bodies of up to four terms over eight decades, loads of up to eight corners and jumps.
+    /// Where contact recedes: the effective load grows up to there, and falls behind it; the rate of a fine search
+    /// finds no earlier fall. Bodies of up to four terms over eight decades, loads of up to eight corners and jumps.
     #[test]
     fn contact_recedes_where_the_effective_load_first_falls(
         terms in prop::collection::vec((-4.0..4.0_f64, 0.05..0.3_f64), 1..4),

@@ -1,4 +1,5 @@
-//! Input that makes no sense, and numbers at the ends of double precision: typed errors or finite answers, and no panic.
+//! Input that makes no sense, and numbers at the ends of double precision: typed errors or finite answers, and no
+//! panic.
 
 use asperity::bed::Bed;
 use asperity::creep::{
@@ -201,8 +202,8 @@ proptest! {
     }
 }
 
-/// A load that is held over all decades of a series, as master curves of rubber have them: the pressure carries it at any time. What the weight of
-/// an increment is off by is the rounding of a few numbers of its size.
+/// A load that is held over all decades of a series, as master curves of rubber have them: the pressure carries it at
+/// any time. What the weight of an increment is off by is the rounding of a few numbers of its size.
 #[test]
 fn pressures_carry_the_load_after_any_time() {
     let history = history(24);

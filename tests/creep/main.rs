@@ -1,4 +1,5 @@
-//! Contact of viscoelastic bodies: against an independent solver in steps of time, closed forms, and itself on another way.
+//! Contact of viscoelastic bodies: against an independent solver in steps of time, closed forms, and itself on another
+//! way.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 mod any_history;

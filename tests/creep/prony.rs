@@ -104,8 +104,8 @@ fn what_is_no_body_is_refused() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
-    /// There and back, over up to twelve decades of times and six of moduli; and ∫ R(t − s) dJ(s) = 1 at any time, each pair of
-    /// exponentials in closed form.
+    /// There and back, over up to twelve decades of times and six of moduli; and ∫ R(t − s) dJ(s) = 1 at any time, each
+    /// pair of exponentials in closed form.
     #[test]
     fn there_and_back(
         terms in prop::collection::vec((-6.0..6.0_f64, -4.0..2.0_f64), 1..8),

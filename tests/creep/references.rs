@@ -29,8 +29,8 @@ fn solid() -> Prony {
 
 const LOAD: f64 = 3.41e-7;
 
-/// A load put on at once and held: nodes, approach and mean gap of the table are exact, and its pressures have the error
-/// of 150 steps from row to row, 2·10⁻⁵. The dense solves of both sides lose three digits of sixteen.
+/// A load put on at once and held: nodes, approach and mean gap of the table are exact, and its pressures have the
+/// error of 150 steps from row to row, 2·10⁻⁵. The dense solves of both sides lose three digits of sixteen.
 #[test]
 fn a_load_that_is_held() {
     let (mut path, history) = path();
@@ -66,8 +66,8 @@ fn a_load_that_is_held() {
     }
 }
 
-/// Unloading and reloading in steps of 0.05 with linear pressures, in both programs the same problem: to the rounding of sixty dense
-/// solves.
+/// Unloading and reloading in steps of 0.05 with linear pressures, in both programs the same problem: to the rounding
+/// of sixty dense solves.
 #[test]
 fn a_load_that_comes_and_goes() {
     let (mut path, history) = path();

@@ -6,9 +6,9 @@ use asperity::reference::HertzSphere;
 use asperity::surface::Paraboloid;
 use asperity::{Boussinesq, Grid, LoadingSolver};
 
-/// Under a load W put on at once a³ = (3/4) R W J(t), δ = a²/R, and at the centre p = 2/(π R) ∫ R(t − s) da(s). On finer and finer grids
-/// all three converge as the elastic path does, in the mean with the mesh: the approach and the pressure at the centre faster than the area,
-/// which is counted in whole cells.
+/// Under a load W put on at once a³ = (3/4) R W J(t), δ = a²/R, and at the centre p = 2/(π R) ∫ R(t − s) da(s). On
+/// finer and finer grids all three converge as the elastic path does, in the mean with the mesh: the approach and the
+/// pressure at the centre faster than the area, which is counted in whole cells.
 #[test]
 fn a_sphere_creeps_as_in_closed_form() {
     let body = Prony::relaxation(0.2, &[(1.0, 0.3), (0.1, 0.5)]).unwrap();

@@ -1,5 +1,6 @@
-//! A boundary element method of viscoelastic contact in steps of time. It knows no path and no bed: in each step it finds the contact of the
-//! present gaps by an active set, with dense solves, and each node keeps its own memory of its pressure.
+//! A boundary element method of viscoelastic contact in steps of time. It knows no path and no bed: in each step it
+//! finds the contact of the present gaps by an active set, with dense solves, and each node keeps its own memory of its
+//! pressure.
 
 use asperity::InfluenceKernel;
 use asperity::creep::Prony;

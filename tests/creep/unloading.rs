@@ -15,8 +15,9 @@ fn history() -> (LoadingSolver, History) {
     (path, history)
 }
 
-/// Up in a second and down in another: the contact is that of an earlier time, and so are pressures but for relaxation. The bed converges to
-/// both with the square of its steps; the elastic state at the effective load, taken in spite of its fall, has far too many nodes.
+/// Up in a second and down in another: the contact is that of an earlier time, and so are pressures but for relaxation.
+/// The bed converges to both with the square of its steps; the elastic state at the effective load, taken in spite of
+/// its fall, has far too many nodes.
 #[test]
 fn contact_is_that_of_an_earlier_time() {
     let (mut path, history) = history();

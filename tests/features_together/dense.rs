@@ -53,9 +53,9 @@ impl Dense {
         self
     }
 
-    /// A pressure that fulfils all conditions of contact is the only one under its load: contact is a convex problem. Asserts them
-    /// within a part of the greatest displacement, and gives the scalars. `approach` is that of a state at which no node
-    /// is elastic.
+    /// A pressure that fulfils all conditions of contact is the only one under its load: contact is a convex problem.
+    /// Asserts them within a part of the greatest displacement, and gives the scalars. `approach` is that of a state at
+    /// which no node is elastic.
     pub(super) fn scalars(
         &self,
         pressure: &[f64],

@@ -14,7 +14,8 @@ use nalgebra::{DMatrix, DVector};
 use super::dense::{Dense, near};
 use super::rows::{Any, E_STAR, Pressed, Row};
 
-/// Neighbours of a node through the sides of its cell, and around borders that repeat; not around that between the ends of `cut`.
+/// Neighbours of a node through the sides of its cell, and around borders that repeat; not around that between the ends
+/// of `cut`.
 fn neighbours(
     (nx, ny): (usize, usize),
     node: usize,
@@ -149,8 +150,8 @@ pub(super) fn patches(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// The leak rate of a gap by a dense factor, as the power that is lost over the pressure drop: errors of pressures enter by their
-/// square.
+/// The leak rate of a gap by a dense factor, as the power that is lost over the pressure drop: errors of pressures
+/// enter by their square.
 fn dense_leak(
     gap: &DMatrix<f64>,
     contact: &DMatrix<bool>,
@@ -310,7 +311,8 @@ pub(super) fn slip(pressed: &mut Pressed<'_>) -> Result<(), Error> {
 const SHARE: f64 = 0.6;
 const TIME: f64 = 2.0;
 
-/// A load that is held: the contact is the elastic one under W J(t)/J(0), and in the end that of a body of the modulus that is left.
+/// A load that is held: the contact is the elastic one under W J(t)/J(0), and in the end that of a body of the modulus
+/// that is left.
 pub(super) fn creep(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let name = pressed.row.name;
     let bed = Bed::new(&pressed.history)?;
@@ -435,8 +437,8 @@ fn between(rows: &[InterfaceRow], x: Column, y: Column, at: f64) -> f64 {
     y(a) + (y(b) - y(a)) * ((at - x(a)) / (x(b) - x(a)))
 }
 
-/// Every state of the path to the tolerance of the table: pressures on all bodies, and conductances and tangential stiffnesses by dense
-/// factors.
+/// Every state of the path to the tolerance of the table: pressures on all bodies, and conductances and tangential
+/// stiffnesses by dense factors.
 pub(super) fn table(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     const TOLERANCE: f64 = 0.01;
     let name = pressed.row.name;

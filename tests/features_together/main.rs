@@ -1,8 +1,9 @@
-//! Every pair of features is right by an independent solution, or refused: the table of `docs/features_together.md`, entry by entry.
+//! Every pair of features is right by an independent solution, or refused: the table of `docs/features_together.md`,
+//! entry by entry.
 //!
-//! A column of that page is a test here, which goes through all rows. What the page says of the pair is what the test expects: `yes`
-//! is an answer that is right, and a letter the reason of a refusal. Columns of the program and of Python have their tests in
-//! `cli/tests/features_together.rs` and `python/tests/test_features_together.py`.
+//! A column of that page is a test here, which goes through all rows. What the page says of the pair is what the test
+//! expects: `yes` is an answer that is right, and a letter the reason of a refusal. Columns of the program and of
+//! Python have their tests in `cli/tests/features_together.rs` and `python/tests/test_features_together.py`.
 #![cfg(feature = "io")]
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 

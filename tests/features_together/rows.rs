@@ -74,9 +74,9 @@ impl Row {
         }
     }
 
-    /// How far a number of a path may be from that of a dense solution. With a factor both have a condition number of some 10³ and
-    /// stiffnesses are quotients of differences; without one docs/reliability.md has what events are off by at worst, 2·10⁻⁴ of an
-    /// interfacial stiffness.
+    /// How far a number of a path may be from that of a dense solution. With a factor both have a condition number of
+    /// some 10³ and stiffnesses are quotients of differences; without one docs/reliability.md has what events are off
+    /// by at worst, 2·10⁻⁴ of an interfacial stiffness.
     pub(super) fn tolerance(&self) -> f64 {
         if self.iterative { 2e-4 } else { 1e-9 }
     }

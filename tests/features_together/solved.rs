@@ -150,8 +150,8 @@ pub(super) fn fields(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// The way back is elastic contact of what is left of the surface: the same pressure under the same load, and on the way up to it
-/// no work but the elastic energy.
+/// The way back is elastic contact of what is left of the surface: the same pressure under the same load, and on the
+/// way up to it no work but the elastic energy.
 pub(super) fn unload(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let (name, last) = (pressed.row.name, pressed.last().contact);
     let there = pressed.path.fields()?.pressure;

@@ -30,8 +30,8 @@ fn of_points(
     (down, trace)
 }
 
-/// On the surface minus the pressure; below, sums of point forces, or the mean pressure on all planes where the grid repeats. And the first
-/// load at which von Mises' stress is one that the path has passed.
+/// On the surface minus the pressure; below, sums of point forces, or the mean pressure on all planes where the grid
+/// repeats. And the first load at which von Mises' stress is one that the path has passed.
 pub(super) fn stress(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let name = pressed.row.name;
     let body = Subsurface::of(&*pressed.row.kernel, POISSON)?;

@@ -161,7 +161,8 @@ fn conditions(solution: &FixedLoadSolution, context: &str) {
     assert!(solution.contact.plastic.unwrap().yielded_nodes <= solution.contact.contact_nodes);
 }
 
-/// The surface less its plastic depth carries the same pressures elastically, at the approach less what is left of the highest node.
+/// The surface less its plastic depth carries the same pressures elastically, at the approach less what is left of the
+/// highest node.
 #[test]
 fn unloading_is_elastic_on_the_residual_surface() {
     for (name, kernel) in kernels() {
@@ -188,7 +189,8 @@ fn unloading_is_elastic_on_the_residual_surface() {
     }
 }
 
-/// C = ((2, 1), (1, 2)), g = (0, 1), H = 3/4, worked out by hand: touch 0 at 0, yield 0 at 3/2, touch 1 at 7/4, yield 1 at 13/4.
+/// C = ((2, 1), (1, 2)), g = (0, 1), H = 3/4, worked out by hand: touch 0 at 0, yield 0 at 3/2, touch 1 at 7/4, yield 1
+/// at 13/4.
 #[test]
 fn two_nodes_by_hand() {
     let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();
@@ -297,8 +299,8 @@ fn targets_and_sweeps() {
     }
 }
 
-/// A sweep starts each load at the nodes that yielded at the one before, as long as loads grow, and comes to the states of loads on
-/// their own: with stiffnesses and without, and from a solution given.
+/// A sweep starts each load at the nodes that yielded at the one before, as long as loads grow, and comes to the states
+/// of loads on their own: with stiffnesses and without, and from a solution given.
 #[test]
 fn sweeps_go_on_from_what_has_yielded() {
     for (name, kernel) in kernels() {
@@ -447,8 +449,8 @@ fn what_is_no_hardness_is_refused() {
     assert!(matches!(refused, Err(Error::Kernel(KernelError::GrowthUnknown))), "{refused:?}");
 }
 
-/// Nodes that have yielded stay so where others carry far more, or press them far up: beside one of infinite hardness, and on a periodic
-/// surface whose height is little beside its displacement.
+/// Nodes that have yielded stay so where others carry far more, or press them far up: beside one of infinite hardness,
+/// and on a periodic surface whose height is little beside its displacement.
 #[test]
 fn yielded_nodes_stay_yielded() {
     let two = Grid::new(2, 1, 1.0, 1.0).unwrap();

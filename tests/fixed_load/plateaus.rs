@@ -1,4 +1,5 @@
-//! Single loads where all nodes in contact have yielded, against the path: the approach grows there, and the load stays.
+//! Single loads where all nodes in contact have yielded, against the path: the approach grows there, and the load
+//! stays.
 
 use std::path::Path;
 
@@ -42,7 +43,8 @@ fn plateaus(history: &History) -> Vec<[ContactState; 2]> {
         .collect()
 }
 
-/// Pressures are known on a plateau, so that all else is right to rounding of lengths, which the path has too: 1e-12 of the longest.
+/// Pressures are known on a plateau, so that all else is right to rounding of lengths, which the path has too: 1e-12 of
+/// the longest.
 fn compare(found: &FixedLoadSolution, expected: &ContactState, length: f64, context: &str) {
     let (state, plastic) = (&found.contact, found.contact.plastic.unwrap());
     let of_path = expected.plastic.unwrap();
@@ -62,7 +64,8 @@ fn compare(found: &FixedLoadSolution, expected: &ContactState, length: f64, cont
     assert_eq!(state.interfacial_stiffness, Some(0.0), "{context}");
 }
 
-/// At most so many plateaus of a path: its load goes with its beginning, and approaches and mean gaps along it with states in between.
+/// At most so many plateaus of a path: its load goes with its beginning, and approaches and mean gaps along it with
+/// states in between.
 fn all_along(
     surface: &dyn Surface,
     kernel: &dyn InfluenceKernel,

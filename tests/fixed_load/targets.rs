@@ -65,7 +65,8 @@ fn mean_gaps() {
     }
 }
 
-/// Just behind first touch the tolerance of gaps lies below the rounding of their mean, which is met as far as that goes.
+/// Just behind first touch the tolerance of gaps lies below the rounding of their mean, which is met as far as that
+/// goes.
 #[test]
 fn mean_gaps_of_surfaces_that_barely_touch() {
     let grid = Grid::square(48, 1.0).unwrap();
@@ -86,8 +87,8 @@ fn mean_gaps_of_surfaces_that_barely_touch() {
     }
 }
 
-/// Close to full contact a plate is stiff for the short waves that are left: its approach of mean planes is far less than
-/// C(0, 0) p̄, to which its solutions are exact, and a mean gap is found to the same.
+/// Close to full contact a plate is stiff for the short waves that are left: its approach of mean planes is far less
+/// than C(0, 0) p̄, to which its solutions are exact, and a mean gap is found to the same.
 #[test]
 fn mean_gaps_where_little_is_left_to_approach() {
     let nodes = 32;
@@ -150,8 +151,8 @@ fn unreachable_areas() {
     }
 }
 
-/// On a worn surface the plateau touches at once, and fewer nodes are not to be had: the answer is the plateau, which was
-/// looked for in vain under ever smaller loads before.
+/// On a worn surface the plateau touches at once, and fewer nodes are not to be had: the answer is the plateau, which
+/// was looked for in vain under ever smaller loads before.
 #[test]
 fn fewer_nodes_than_touch_first() {
     let grid = Grid::square(16, 1.0).unwrap();

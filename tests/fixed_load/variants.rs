@@ -94,8 +94,8 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
     assert_eq!(without.contact, expected.contact);
 }
 
-/// A body of which nothing is known but its symbol, positive on each wave of the grid. On coarser grids of odd numbers of
-/// nodes it need not be positive definite, and whole groups of nodes may come and go.
+/// A body of which nothing is known but its symbol, positive on each wave of the grid. On coarser grids of odd numbers
+/// of nodes it need not be positive definite, and whole groups of nodes may come and go.
 #[test]
 fn any_symbol_is_solved_from_coarser_grids() {
     let grid = Grid::new(67, 1, 1.0, 1.0).unwrap();

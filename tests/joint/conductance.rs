@@ -78,8 +78,8 @@ fn what_conducts_nothing_is_refused() {
     assert!(Conduction::thermal(1.0, 1.0).unwrap().of(&contact, Layering::HalfSpace).is_err());
 }
 
-/// Without unresolved roughness the bounds are the stiffnesses on both sides of an event; with more of it they widen, and the conductance
-/// lies between them.
+/// Without unresolved roughness the bounds are the stiffnesses on both sides of an event; with more of it they widen,
+/// and the conductance lies between them.
 #[test]
 fn bounds_enclose_the_conductance_and_widen_with_the_roughness() {
     let grid = Grid::square(32, 1.25e-3).unwrap();
@@ -117,7 +117,8 @@ fn bounds_enclose_the_conductance_and_widen_with_the_roughness() {
     }
 }
 
-/// A surface, and the same with more roughness: its conductance lies within the bounds of the first, which know nothing of it but its height.
+/// A surface, and the same with more roughness: its conductance lies within the bounds of the first, which know nothing
+/// of it but its height.
 #[test]
 fn a_rougher_surface_conducts_within_the_bounds() {
     let grid = Grid::square(24, 1e-3).unwrap();

@@ -38,7 +38,8 @@ fn conductance(state: &LoadingState) -> f64 {
     heat().of(&state.contact, Layering::HalfSpace).unwrap().unwrap()
 }
 
-/// The stiffness of a set of nodes, ΔA eᵀC⁻¹e, and the interfacial one, from a dense solution with no factor of this crate.
+/// The stiffness of a set of nodes, ΔA eᵀC⁻¹e, and the interfacial one, from a dense solution with no factor of this
+/// crate.
 fn dense(kernel: &dyn InfluenceKernel, nodes: &[usize]) -> [f64; 2] {
     let matrix = influence_matrix(kernel);
     let grid = kernel.grid();
@@ -52,8 +53,9 @@ fn dense(kernel: &dyn InfluenceKernel, nodes: &[usize]) -> [f64; 2] {
     [stiffness, stiffness / (closing.sum::<f64>() / grid.nodes() as f64)]
 }
 
-/// At every touch of three paths, most nodes of which yield. Dense solutions have a condition number of some 10³; the interfacial stiffness is
-/// a quotient whose denominator is as small as the open part of the area, a 192nd at least: 1e-16 · 1e3 · 192 at most.
+/// At every touch of three paths, most nodes of which yield. Dense solutions have a condition number of some 10³; the
+/// interfacial stiffness is a quotient whose denominator is as small as the open part of the area, a 192nd at least:
+/// 1e-16 · 1e3 · 192 at most.
 #[test]
 fn the_stiffness_on_unloading_is_that_of_the_contact() {
     let grid = Grid::new(16, 12, 2e-5, 3e-5).unwrap();
@@ -97,8 +99,8 @@ fn the_stiffness_on_unloading_is_that_of_the_contact() {
     }
 }
 
-/// The first state on the way back, by the elastic path of the surface that is left. It is found as the last one of that path, whose nodes touch
-/// together to rounding: all of them.
+/// The first state on the way back, by the elastic path of the surface that is left. It is found as the last one of
+/// that path, whose nodes touch together to rounding: all of them.
 #[test]
 fn it_is_where_unloading_begins() {
     let grid = Grid::square(32, 1.25e-3).unwrap();
@@ -139,8 +141,8 @@ fn it_is_where_unloading_begins() {
     }
 }
 
-/// A ball under 8 N: Holm's 4a/ρ with the radius of the area in contact. Whole cells along the edge, of which the circle has 28 across, make the
-/// radius uncertain by half a cell, 3.6 %; the elastic ring alone conducts 0.00368 W/K.
+/// A ball under 8 N: Holm's 4a/ρ with the radius of the area in contact. Whole cells along the edge, of which the
+/// circle has 28 across, make the radius uncertain by half a cell, 3.6 %; the elastic ring alone conducts 0.00368 W/K.
 #[test]
 fn a_ball_that_yields_conducts_as_its_contact() {
     let grid = Grid::square(64, 0.6e-3).unwrap();
@@ -270,8 +272,9 @@ fn between(rows: &[InterfaceRow], x: Column, y: Column, at: f64) -> f64 {
     y(a) + (y(b) - y(a)) * ((at - x(a)) / (x(b) - x(a)))
 }
 
-/// Tables reproduce every state of the path within the tolerance that they state, plateaus among them, where the conductance jumps at one
-/// pressure: there the table is right on one side or the other of the 10⁻¹¹ by which it raises pressures from row to row.
+/// Tables reproduce every state of the path within the tolerance that they state, plateaus among them, where the
+/// conductance jumps at one pressure: there the table is right on one side or the other of the 10⁻¹¹ by which it raises
+/// pressures from row to row.
 #[test]
 fn tables_reproduce_paths_that_yield() {
     let (mut plateaus, mut widest) = (0, 0.0_f64);
@@ -328,7 +331,8 @@ fn tables_reproduce_paths_that_yield() {
                         between(rows, |r| r.pressure, column, pressure * (1.0 + off)) / expected
                             - 1.0
                     });
-                    // By way of the pressure that the overclosure gives, whose rounding is some 10⁻⁵ of the 10⁻¹¹ between the rows of a jump.
+                    // By way of the pressure that the overclosure gives, whose rounding is some 10⁻⁵ of the 10⁻¹¹
+                    // between the rows of a jump.
                     let chained = between(rows, |r| r.pressure, column, found) / expected - 1.0;
                     assert!(
                         chained.abs() <= tolerance * (1.0 + 1e-6) + 1e-4,

@@ -83,8 +83,8 @@ fn theories_of_half_spaces_are_refused_on_layers() {
     assert!(states.on(Layering::Several).layering().check(Theory::Slip).is_err());
 }
 
-/// Why one material on a rigid base may creep: displacements go with 1/E, so that all of them relax by one function. Not so with a second
-/// elastic material. Coefficients are right to 1e-9.
+/// Why one material on a rigid base may creep: displacements go with 1/E, so that all of them relax by one function.
+/// Not so with a second elastic material. Coefficients are right to 1e-9.
 #[test]
 fn one_material_on_a_rigid_base_answers_in_proportion() {
     let grid = Grid::square(16, 1.3e-3).unwrap();

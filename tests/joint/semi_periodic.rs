@@ -35,8 +35,8 @@ fn rectangle((x, y): (f64, f64), (a, b): (f64, f64)) -> f64 {
     part(x1, y1) - part(x0, y1) - part(x1, y0) + part(x0, y0)
 }
 
-/// Conductances of spots of one potential on a half-space of each body, whose current leaves by the same cells along a row of `images` to either side:
-/// to a point that is far off, and to the mean potential of the grid.
+/// Conductances of spots of one potential on a half-space of each body, whose current leaves by the same cells along a
+/// row of `images` to either side: to a point that is far off, and to the mean potential of the grid.
 fn conducted(grid: &Grid, spots: &[usize], images: usize) -> [f64; 2] {
     let (nx, [dx, dy]) = (grid.nx(), [grid.dx(), grid.dy()]);
     let place = |node: usize| ((node % nx) as f64 * dx, (node / nx) as f64 * dy);
@@ -74,8 +74,8 @@ fn touching(surface: &HeightMap, kernel: &dyn InfluenceKernel, nodes: usize) -> 
     found.contact
 }
 
-/// Against the potential itself: to the mean of the surface it is the program's, however long the row of images, and to a point far off it falls with the
-/// length of the row, as dW/dδ with the length that its approach is counted from.
+/// Against the potential itself: to the mean of the surface it is the program's, however long the row of images, and to
+/// a point far off it falls with the length of the row, as dW/dδ with the length that its approach is counted from.
 #[test]
 fn a_row_conducts_to_the_mean_of_its_surface() {
     let grid = Grid::new(6, 9, 1e-4, 1.4e-4).unwrap();
@@ -89,13 +89,15 @@ fn a_row_conducts_to_the_mean_of_its_surface() {
     assert_eq!(heat().of_interface(&contact, body).unwrap(), Some(found));
     let far = contact_conductance(contact.contact_stiffness.unwrap(), E_STAR, RESISTIVITY).unwrap();
     let [short, long] = [50, 400].map(|images| conducted(&grid, &nodes, images));
-    // What a row leaves out falls by the square of its length: 1/N² of half the width over the side, below 10⁻³ and 10⁻⁵.
+    // What a row leaves out falls by the square of its length: 1/N² of half the width over the side, below 10⁻³ and
+    // 10⁻⁵.
     assert!((short[1] / found - 1.0).abs() < 1e-3, "{found} {short:?}");
     assert!((long[1] / found - 1.0).abs() < 1e-5, "{found} {long:?}");
     assert!(long[0] < 0.8 * short[0] && short[0] < 0.8 * far, "{far} {short:?} {long:?}");
 }
 
-/// Many equal strips beside each other conduct as so many periods of a periodic half-space: edges matter less and less. To a far point they do not.
+/// Many equal strips beside each other conduct as so many periods of a periodic half-space: edges matter less and less.
+/// To a far point they do not.
 #[test]
 fn many_strips_conduct_as_a_periodic_half_space() {
     let is_one = |ix: usize, iy: usize| ix == 1 && iy % 4 == 2;

@@ -42,8 +42,9 @@ fn interpolated(
     y(a) + (y(b) - y(a)) * (at - x(a)) / (x(b) - x(a))
 }
 
-/// At every state of the path each quantity is within the tolerance, which is what thins the table; between states pressure is linear in the
-/// overclosure, as in the table. The worst error is near the tolerance: the table is no longer than it needs to be by much.
+/// At every state of the path each quantity is within the tolerance, which is what thins the table; between states
+/// pressure is linear in the overclosure, as in the table. The worst error is near the tolerance: the table is no
+/// longer than it needs to be by much.
 #[test]
 fn interpolation_errs_by_no_more_than_the_tolerance() {
     for history in paths() {
@@ -197,8 +198,8 @@ fn programs_find_the_numbers_where_they_look() {
     );
 }
 
-/// The same law in mm, N, MPa, t, s and A: energies in mJ, so that pressure times overclosure, conductance times a temperature or half a
-/// voltage squared, and slip limit squared over stiffness are what they were, per mm².
+/// The same law in mm, N, MPa, t, s and A: energies in mJ, so that pressure times overclosure, conductance times a
+/// temperature or half a voltage squared, and slip limit squared over stiffness are what they were, per mm².
 #[test]
 fn tables_may_be_in_millimetres() {
     let history = &paths()[1];
@@ -263,8 +264,8 @@ fn by_hand(points: &[(f64, f64)]) -> History {
     states.collect()
 }
 
-/// Where the mean gap opens under a greater load the stiffness is negative. A state whose pressure the table has all the same is left out; else
-/// the table would be wrong there, and the error says where.
+/// Where the mean gap opens under a greater load the stiffness is negative. A state whose pressure the table has all
+/// the same is left out; else the table would be wrong there, and the error says where.
 #[test]
 fn gaps_that_open_are_coped_with_or_named() {
     let build = |history: &History| InterfaceTable::builder(history).tolerance(0.1).build();

@@ -1,5 +1,5 @@
-//! Layered bodies beside other programs: a layer on a rigid base of ContactMechanics, and coefficients of cells by quadrature over all
-//! wavevectors.
+//! Layered bodies beside other programs: a layer on a rigid base of ContactMechanics, and coefficients of cells by
+//! quadrature over all wavevectors.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::{Grid, InfluenceKernel, KernelTable};

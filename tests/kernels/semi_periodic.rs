@@ -6,8 +6,8 @@ use asperity::surface::Axis;
 use asperity::{Boundary, Error, Grid, InfluenceKernel, KernelError};
 use nalgebra::DMatrix;
 
-/// It sums up the images −N … N, as a row of the length ℓ = (2N + 1) L: less the logarithm of ℓ/R this is the kernel, up to what the
-/// images beyond do to the shape, of the order (d/ℓ)².
+/// It sums up the images −N … N, as a row of the length ℓ = (2N + 1) L: less the logarithm of ℓ/R this is the kernel,
+/// up to what the images beyond do to the shape, of the order (d/ℓ)².
 #[test]
 fn the_sums_of_contact_mechanics() {
     let text = include_str!("../data/semi_periodic.csv");
@@ -23,16 +23,16 @@ fn the_sums_of_contact_mechanics() {
         let unit = 2.0 * grid.cell_area() / (std::f64::consts::PI * e_star * ly);
         let found = kernel.coefficient(di as isize, dj as isize)
             + unit * (length / kernel.reference_length()).ln();
-        // Terms of second order: the curvature of the images beyond, and 1/24 of the sum of 1/k against the logarithm. Its images lie
-        // evenly around the nearest one.
+        // Terms of second order: the curvature of the images beyond, and 1/24 of the sum of 1/k against the logarithm.
+        // Its images lie evenly around the nearest one.
         let (x2, y2) = ((di * grid.dx()).powi(2), (dj.min(ny - dj) * grid.dy()).powi(2));
         let n = images + 0.5;
         let second = (0.5 * (y2 - 0.5 * x2) / (ly * ly) - 1.0 / 24.0) / (n * n);
         let cells = (grid.dx().powi(2) + grid.dy().powi(2)) / (24.0 * ly * ly * n * n);
         let fourth = (1.0 + (x2 + y2) / (ly * ly)).powi(2) / n.powi(4);
         let error = (found - expected - unit * second).abs();
-        // What the size of a cell adds to the curvature, fourth order, and rounding: its formula of a rectangle loses as many digits as
-        // the images are cells away, three.
+        // What the size of a cell adds to the curvature, fourth order, and rounding: its formula of a rectangle loses
+        // as many digits as the images are cells away, three.
         assert!(error < unit * (cells + fourth + 1e-12), "{line}: {error:e}");
         lines += 1;
     }

@@ -21,8 +21,8 @@ fn grid() -> Grid {
     Grid::square(32, 1.25e-3).unwrap()
 }
 
-/// The leak rate falls with every state, ends at the state at which `patches` finds no channel any more, and not before; the curve has as
-/// many points as were asked for, and no two of them are far apart.
+/// The leak rate falls with every state, ends at the state at which `patches` finds no channel any more, and not
+/// before; the curve has as many points as were asked for, and no two of them are far apart.
 #[test]
 fn leaks_end_where_the_last_channel_closes() {
     let free = Boussinesq::new(grid(), 115e9).unwrap();
@@ -99,8 +99,8 @@ fn leaks_of_any_state() {
     assert!(matches!(seal.leak_at(&mut path, &beyond), Err(Error::StateNotReached { .. })));
 }
 
-/// Whether fluid gets from one end of an axis to the other through sides of cells, by a flood of one map: it shares nothing with the
-/// library. Across the flow it may pass the border of a periodic grid.
+/// Whether fluid gets from one end of an axis to the other through sides of cells, by a flood of one map: it shares
+/// nothing with the library. Across the flow it may pass the border of a periodic grid.
 fn leads_through(is_open: &[bool], (nx, ny): (usize, usize), along: Axis, wraps: bool) -> bool {
     let at = |a: usize, c: usize| match along {
         Axis::X => a + nx * c,
@@ -134,8 +134,9 @@ fn leads_through(is_open: &[bool], (nx, ny): (usize, usize), along: Axis, wraps:
     false
 }
 
-/// The gap seals at the state at which a flood of each contact map says so, on every boundary; the curve closes there, and a percolation with patches
-/// of either kind says the same. Around a periodic grid the last channel closes sooner on two of these surfaces.
+/// The gap seals at the state at which a flood of each contact map says so, on every boundary; the curve closes there,
+/// and a percolation with patches of either kind says the same. Around a periodic grid the last channel closes sooner
+/// on two of these surfaces.
 #[test]
 fn the_gap_seals_when_a_flood_of_each_state_says_so() {
     let grid = Grid::square(64, 1.25e-3).unwrap();

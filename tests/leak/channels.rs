@@ -44,8 +44,8 @@ fn channels_in_parallel() {
     }
 }
 
-/// One behind the other: resistances add up, the halves of the first and of the last cell with the others. The narrowest place has
-/// the largest share.
+/// One behind the other: resistances add up, the halves of the first and of the last cell with the others. The
+/// narrowest place has the largest share.
 #[test]
 fn channels_in_series() {
     let grid = Grid::new(12, 9, 0.5, 0.25).unwrap();
@@ -60,7 +60,8 @@ fn channels_in_series() {
         assert_eq!((constriction.node.0, constriction.gap), (narrowest, some(narrowest)));
         let share = 0.5 / some(narrowest).powi(3) / resistance;
         assert!((constriction.pressure_drop / share - 1.0).abs() < 1e-9);
-        // All that is lost in the 9 columns about it; all 9 rows lie in the square if it is in the middle or goes around.
+        // All that is lost in the 9 columns about it; all 9 rows lie in the square if it is in the middle or goes
+        // around.
         let columns = narrowest.saturating_sub(4)..(narrowest + 5).min(12);
         let share: f64 = columns.map(|ix| 0.5 / some(ix).powi(3)).sum::<f64>() / resistance;
         let rows = match boundary {
@@ -99,9 +100,9 @@ fn throats_of_eighteen_decades() {
     assert!((constriction.dissipation - 0.5).abs() < 1e-9);
 }
 
-/// A sinusoidal gap, g = g₀ (1 + ε cos), in closed form: along the flow the mean of g⁻³ is (1 + ε²/2) / (g₀³ (1 − ε²)^(5/2)), across it
-/// that of g³ is g₀³ (1 + 3ε²/2). Means of 96 nodes of such waves are exact to ρ⁹⁶ with ρ = ε / (1 + √(1 − ε²)) = 0.27 at ε = ½, far below
-/// rounding.
+/// A sinusoidal gap, g = g₀ (1 + ε cos), in closed form: along the flow the mean of g⁻³ is (1 + ε²/2) / (g₀³ (1 −
+/// ε²)^(5/2)), across it that of g³ is g₀³ (1 + 3ε²/2). Means of 96 nodes of such waves are exact to ρ⁹⁶ with ρ = ε /
+/// (1 + √(1 − ε²)) = 0.27 at ε = ½, far below rounding.
 #[test]
 fn a_sinusoidal_gap_along_and_across() {
     let (n, e) = (96, 0.5_f64);
@@ -125,7 +126,8 @@ fn a_sinusoidal_gap_along_and_across() {
     }
 }
 
-/// Two channels; what hangs on them, and what does not, makes no difference. The pool has no pressure, and bays that of their edge.
+/// Two channels; what hangs on them, and what does not, makes no difference. The pool has no pressure, and bays that of
+/// their edge.
 #[test]
 fn pools_and_bays_are_left_out() {
     let grid = Grid::new(10, 8, 1.0, 1.0).unwrap();
@@ -215,7 +217,8 @@ fn mirrored_and_transposed_gaps_leak_the_same() {
     }
 }
 
-/// By dimensions: rates go with the cube of the gap and the pressure drop, and against the viscosity. Powers of two change no digit.
+/// By dimensions: rates go with the cube of the gap and the pressure drop, and against the viscosity. Powers of two
+/// change no digit.
 #[test]
 fn rates_scale_with_gap_pressure_and_viscosity() {
     let grid = Grid::square(9, 2.0).unwrap();

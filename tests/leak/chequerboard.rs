@@ -8,8 +8,8 @@ use nalgebra::DMatrix;
 
 use super::{BOUNDARIES, assert_conserved, leak};
 
-/// One period from the middle of a square to that of the next but one, along both directions: mirror lines, on which the pressure is even,
-/// so that it is the board without end. `m` cells to half a square.
+/// One period from the middle of a square to that of the next but one, along both directions: mirror lines, on which
+/// the pressure is even, so that it is the board without end. `m` cells to half a square.
 fn board(m: usize, conductivities: [f64; 2]) -> (Grid, DMatrix<f64>) {
     let n = 4 * m;
     let square = |k: usize| (k + m) / (2 * m);
@@ -17,8 +17,9 @@ fn board(m: usize, conductivities: [f64; 2]) -> (Grid, DMatrix<f64>) {
     (Grid::square(n, 1.0).unwrap(), gap)
 }
 
-/// At the corners the flux is infinite with the power λ − 1 of the distance, `tan(π λ / 4) = √(k₂ / k₁)`: energies, and with them the
-/// conductivity, converge with the order 2λ. Fields are the same with closed sides and with joined ones, since sides are mirrors.
+/// At the corners the flux is infinite with the power λ − 1 of the distance, `tan(π λ / 4) = √(k₂ / k₁)`: energies, and
+/// with them the conductivity, converge with the order 2λ. Fields are the same with closed sides and with joined ones,
+/// since sides are mirrors.
 #[test]
 fn a_chequerboard_conducts_as_the_geometric_mean() {
     for contrast in [2.0_f64, 10.0] {

@@ -1,4 +1,5 @@
-//! Gaps over 8, 10 and 12 decades in no order, conductances over three times as many: leak rates against a dense elimination.
+//! Gaps over 8, 10 and 12 decades in no order, conductances over three times as many: leak rates against a dense
+//! elimination.
 
 use asperity::surface::Axis;
 use asperity::{Boundary, Grid};
@@ -44,10 +45,10 @@ fn gaps(map: Map, decades: f64, (nx, ny): (usize, usize), seed: u64) -> DMatrix<
     })
 }
 
-/// What flows along x under a pressure drop of 1 through gaps that conduct their cubes, from one cell to the next half a cell of either in
-/// series. Nodes are eliminated in the order of their indices: a node at which conductances to others have the sum d joins two of them
-/// by their product over d. All numbers are positive, so that the result is right to the rounding of sums, some 10⁻¹⁶ for each node
-/// at worst.
+/// What flows along x under a pressure drop of 1 through gaps that conduct their cubes, from one cell to the next half
+/// a cell of either in series. Nodes are eliminated in the order of their indices: a node at which conductances to
+/// others have the sum d joins two of them by their product over d. All numbers are positive, so that the result is
+/// right to the rounding of sums, some 10⁻¹⁶ for each node at worst.
 fn dense(gap: &DMatrix<f64>, grid: &Grid, boundary: Boundary) -> f64 {
     let (nx, ny) = gap.shape();
     let n = nx * ny;

@@ -8,7 +8,8 @@ use nalgebra::DMatrix;
 
 use super::leak;
 
-/// Through a uniform gap of 1 a gas of 3 bar flows into one of 1: `(p₁² − p₂²) / 2 p₂` drives it, and its pressure is the root of a line.
+/// Through a uniform gap of 1 a gas of 3 bar flows into one of 1: `(p₁² − p₂²) / 2 p₂` drives it, and its pressure is
+/// the root of a line.
 #[test]
 fn gases_flow_by_the_square_of_their_pressure() {
     let grid = Grid::with_sides(16, 4, 4.0, 2.0).unwrap();

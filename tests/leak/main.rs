@@ -14,7 +14,8 @@ use asperity::surface::Axis;
 use asperity::{Boundary, Error, Grid};
 use nalgebra::DMatrix;
 
-/// The leak of a fluid of viscosity 1/12 under a pressure drop of 1, so that a gap of 1 conducts 1; nodes without gap are in contact.
+/// The leak of a fluid of viscosity 1/12 under a pressure drop of 1, so that a gap of 1 conducts 1; nodes without gap
+/// are in contact.
 fn leak(gap: &DMatrix<f64>, grid: &Grid, boundary: Boundary, along: Axis) -> Result<Leak, Error> {
     let seal = Seal::new(1.0 / 12.0, 1.0, along)?;
     seal.leak(gap, &gap.map(|gap| gap == 0.0), (grid, boundary))

@@ -20,8 +20,8 @@ fn maps(name: &str) -> Vec<DMatrix<f64>> {
     (0..10).map(|k| all.columns(k * SHAPE.1, SHAPE.1).into_owned()).collect()
 }
 
-/// Leak rates to what may be lost, 10⁻¹¹, and pressures to what may change last, 10⁻⁹ of the pressure drop. Leak rates span 17 decades, and
-/// conductances of one map up to 16.
+/// Leak rates to what may be lost, 10⁻¹¹, and pressures to what may change last, 10⁻⁹ of the pressure drop. Leak rates
+/// span 17 decades, and conductances of one map up to 16.
 #[test]
 fn leaks_are_those_of_sparse_factors() {
     let grid = Grid::new(SHAPE.0, SHAPE.1, 2e-5, 3e-5).unwrap();

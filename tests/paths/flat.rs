@@ -10,9 +10,9 @@ use nalgebra::DMatrix;
 
 use crate::without_factor::half_spaces;
 
-/// In full contact the mean gap is exactly 0 and the interfacial stiffness infinite, by identity: in a path with a factor and
-/// without one, read from its record under a load, and under a fixed load, however few nodes there are. Before, among nodes that
-/// touch together, there is a stiffness, and the mean gap is 0 as well.
+/// In full contact the mean gap is exactly 0 and the interfacial stiffness infinite, by identity: in a path with a
+/// factor and without one, read from its record under a load, and under a fixed load, however few nodes there are.
+/// Before, among nodes that touch together, there is a stiffness, and the mean gap is 0 as well.
 #[test]
 fn nothing_out_of_contact_is_no_gap_and_infinite_stiffness() {
     for (nx, ny) in [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 3), (4, 3)] {
@@ -70,10 +70,13 @@ fn on_flat(punch: &FlatPunch, kernel: &dyn InfluenceKernel) {
     }
 }
 
-/// Nodes that touch at once, more of them than a window watches: stiffnesses of every contact in between are those of the factor.
+/// Nodes that touch at once, more of them than a window watches: stiffnesses of every contact in between are those of
+/// the factor.
 ///
-/// They are exact as long as local solutions see the whole contact, which is 144 nodes. Behind that pivots are off by some 10⁻³ of
-/// themselves, and scaled so that a window of at most 180 nodes ends where its solution is: measured 2.0e-4 of the stiffness. Of the last gaps the interfacial stiffness says how fast they close, which changes by its own size within a window.
+/// They are exact as long as local solutions see the whole contact, which is 144 nodes. Behind that pivots are off by
+/// some 10⁻³ of themselves, and scaled so that a window of at most 180 nodes ends where its solution is: measured
+/// 2.0e-4 of the stiffness. Of the last gaps the interfacial stiffness says how fast they close, which changes by its
+/// own size within a window.
 #[test]
 fn stiffnesses_among_nodes_that_touch_at_once_are_those_of_the_factor() {
     for (n, side) in [(24, 24), (32, 20), (32, 32)] {

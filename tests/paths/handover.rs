@@ -62,8 +62,8 @@ fn the_same_path_on_both_sides_of_the_seam() {
             seam = seam.or(path.handed_over_at());
         };
         if let Err(error) = ended {
-            // Not even the fields of the grid that an iteration needs: a factor up to where it fits. The message speaks of
-            // the budget that was given, and all fields of the states up to there are known.
+            // Not even the fields of the grid that an iteration needs: a factor up to where it fits. The message speaks
+            // of the budget that was given, and all fields of the states up to there are known.
             let given = matches!(error, Error::MemoryBudget { budget: told, .. } if told == budget);
             assert!(given, "{error}");
             compare(&context, &states, &expected[..states.len()]);

@@ -54,8 +54,8 @@ fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/hardness").join(name)
 }
 
-/// The same events in the same order, and every column within 1e-10 of its value or of its greatest one: the events come from LU
-/// solves with a condition number of some 10³, so that both sides err by 1e-12.
+/// The same events in the same order, and every column within 1e-10 of its value or of its greatest one: the events
+/// come from LU solves with a condition number of some 10³, so that both sides err by 1e-12.
 fn compare(context: &str, events: &[Truth], states: &[LoadingState]) {
     let last = events.last().unwrap();
     let cell = events[0].get("contact_area");
@@ -225,8 +225,8 @@ fn states_fulfil_the_conditions() {
     }
 }
 
-/// Two nodes with C = (2, 1; 1, 2), gaps 0 and 1 and H = 3/4: touch at 0, yield at 3/2, touch at 7/4, yield at 13/4. Between 3/2 and
-/// 7/4 the load stays at 3/4.
+/// Two nodes with C = (2, 1; 1, 2), gaps 0 and 1 and H = 3/4: touch at 0, yield at 3/2, touch at 7/4, yield at 13/4.
+/// Between 3/2 and 7/4 the load stays at 3/4.
 #[test]
 fn two_nodes_by_hand() {
     let two = Grid::new(2, 1, 1.0, 1.0).unwrap();
@@ -352,7 +352,8 @@ fn paths_end_where_they_are_to_end() {
     }
 }
 
-/// A path to full contact ends there, though nodes would yield behind it; one to the infinite hardness of the rest is at its end.
+/// A path to full contact ends there, though nodes would yield behind it; one to the infinite hardness of the rest is
+/// at its end.
 #[test]
 fn full_contact_is_an_end_if_nothing_yields() {
     let square = Grid::new(3, 3, 1.0, 1.0).unwrap();
@@ -422,8 +423,8 @@ fn records_of_paths_on_which_nodes_yield() {
     }
 }
 
-/// Unloading and loading again is the elastic path of the surface that is left, up to the same load and the same approach; beyond it
-/// the first path goes on. The loop takes the plastic work.
+/// Unloading and loading again is the elastic path of the surface that is left, up to the same load and the same
+/// approach; beyond it the first path goes on. The loop takes the plastic work.
 #[test]
 fn unloading_is_elastic() {
     let (name, kernel) = &cases()[0];

@@ -1,4 +1,5 @@
-//! Paths with a hardness and without a factor against those of a factor: the same events of both kinds, and how far the states may be off.
+//! Paths with a hardness and without a factor against those of a factor: the same events of both kinds, and how far the
+//! states may be off.
 
 use std::collections::{HashMap, HashSet};
 
@@ -17,9 +18,10 @@ use crate::without_factor::half_spaces;
 /// Events closer than this, relative to the approach, are ties, which come in the order of their nodes.
 const TIE: f64 = 1e-9;
 
-/// How states between the ends of windows may differ from exact ones, relatively; energies relative to the greatest, mean gaps relative to
-/// the initial one, and plastic sums relative to the last ones. Measured on these surfaces: at worst 1e-5, 2e-6, 1.3e-3 with one node of
-/// 1296 that is out of contact and 1e-4 elsewhere, 2e-6, 3e-6; at 128² a third of that.
+/// How states between the ends of windows may differ from exact ones, relatively; energies relative to the greatest,
+/// mean gaps relative to the initial one, and plastic sums relative to the last ones. Measured on these surfaces: at
+/// worst 1e-5, 2e-6, 1.3e-3 with one node of 1296 that is out of contact and 1e-4 elsewhere, 2e-6, 3e-6; at 128² a
+/// third of that.
 struct Tolerances {
     load: f64,
     stiffness: f64,
@@ -40,8 +42,8 @@ fn event(state: &LoadingState) -> (ContactEvent, (usize, usize)) {
     (state.event, state.node)
 }
 
-/// Checks states against exact ones: events up to ties, errors of approaches against their estimates, and scalars where no tie makes the
-/// order of equals matter. Returns the greatest error over its estimate.
+/// Checks states against exact ones: events up to ties, errors of approaches against their estimates, and scalars where
+/// no tie makes the order of equals matter. Returns the greatest error over its estimate.
 fn compare(
     context: &str,
     found: &[LoadingState],
@@ -167,8 +169,9 @@ fn hard_shapes_have_the_events_of_the_factor() {
         ("spike", |x, y| if x.hypot(y) < 0.04 { 2e-3 } else { 0.0 }),
         ("plateaus", |x, y| if x * y > 0.02 { 1e-3 } else { 0.0 }),
     ];
-    // Where one row of gaps is left beside a spike, a thousandth of the initial gap wide, loads double while the approach grows by a few parts
-    // in 10⁴: measured 1.5e-4, which approaches that are off by 2e-7, of estimated 3e-6, make.
+    // Where one row of gaps is left beside a spike, a thousandth of the initial gap wide, loads double while the
+    // approach grows by a few parts in 10⁴: measured 1.5e-4, which approaches that are off by 2e-7, of estimated 3e-6,
+    // make.
     let hard = Tolerances { load: 3e-4, ..BETWEEN };
     for (nx, ny, aspect) in [(20, 20, 1.0), (17, 14, 3.0)] {
         let grid = Grid::new(nx, ny, aspect / nx as f64, 1.0 / nx as f64).unwrap();
@@ -192,8 +195,8 @@ fn hard_shapes_have_the_events_of_the_factor() {
     }
 }
 
-/// Flat surfaces touch with all nodes at once, and on a periodic half-space all yield at once; with a tiny hardness any surface does so
-/// nearly at once.
+/// Flat surfaces touch with all nodes at once, and on a periodic half-space all yield at once; with a tiny hardness any
+/// surface does so nearly at once.
 #[test]
 fn flat_and_soft_surfaces() {
     let grid = Grid::new(16, 12, 1.0, 1.0).unwrap();
@@ -229,8 +232,8 @@ fn flat_and_soft_surfaces() {
     }
 }
 
-/// Nodes that yield at once, and others that touch at once behind them, more of them than a window watches: stiffnesses of every contact in
-/// between are those of dense solutions.
+/// Nodes that yield at once, and others that touch at once behind them, more of them than a window watches: stiffnesses
+/// of every contact in between are those of dense solutions.
 #[test]
 fn stiffnesses_among_nodes_that_yield_at_once_are_those_of_dense_solutions() {
     let n = 24;
@@ -289,7 +292,8 @@ fn stiffnesses_among_nodes_that_yield_at_once_are_those_of_dense_solutions() {
                 compared += 1;
             }
             println!("{name}, {half_space}: {worst:.1e} in {compared} states");
-            // Measured 6e-7, and 1.2e-4 of how fast the last gaps close. In full contact all stiffnesses are those of plateaus.
+            // Measured 6e-7, and 1.2e-4 of how fast the last gaps close. In full contact all stiffnesses are those of
+            // plateaus.
             let has_gaps = name == "step" || half_space == "free";
             let allowed = if half_space == "free" { 1e-5 } else { 1e-3 };
             assert!(worst < allowed, "{name}, {half_space}: {worst}");
@@ -499,8 +503,8 @@ fn every_state_can_be_asked_for_its_fields() {
     }
 }
 
-/// A factor that does not fit any more is given up: before the seam states are exact to rounding. With a budget that changes, the
-/// seam is everywhere.
+/// A factor that does not fit any more is given up: before the seam states are exact to rounding. With a budget that
+/// changes, the seam is everywhere.
 #[test]
 fn the_default_hands_over_at_the_same_events() {
     let grid = Grid::square(40, 1.0).unwrap();
@@ -559,7 +563,8 @@ fn the_default_hands_over_at_the_same_events() {
     assert!(seams.len() >= 2 && asked >= 2, "{seams:?} {asked}");
 }
 
-/// A record of a path under way: read, resumed and replayed it is the path that was not interrupted. What is replayed may go on.
+/// A record of a path under way: read, resumed and replayed it is the path that was not interrupted. What is replayed
+/// may go on.
 #[cfg(feature = "io")]
 #[test]
 fn records_of_paths_without_a_factor() {

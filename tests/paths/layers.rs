@@ -1,4 +1,5 @@
-//! Coated, thin and graded bodies: thin layers under spheres and punches, paths on soft and stiff coats, and their records.
+//! Coated, thin and graded bodies: thin layers under spheres and punches, paths on soft and stiff coats, and their
+//! records.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::reference::ThinLayer;
@@ -40,8 +41,8 @@ fn errors_of_a_sphere(poisson: f64, thicknesses: [f64; 3]) -> [f64; 3] {
 
 #[test]
 fn a_sphere_on_a_thin_layer() {
-    // Nothing of first order is left of a compressible layer, whose pressure is zero at the edge: the errors are below (h/a)²/5, and
-    // below those of 32 cells to the radius, 2 × 10⁻⁴.
+    // Nothing of first order is left of a compressible layer, whose pressure is zero at the edge: the errors are below
+    // (h/a)²/5, and below those of 32 cells to the radius, 2 × 10⁻⁴.
     for (error, h) in errors_of_a_sphere(0.3, [8.0, 4.0, 2.0]).into_iter().zip([8.0, 4.0, 2.0]) {
         assert!(error.abs() < 0.2 * (h / 32.0_f64).powi(2) + 2e-4, "{h}: {error}");
     }
@@ -127,7 +128,8 @@ fn paths_on_coats_are_those_of_single_loads() {
     }
 }
 
-/// A layer on a rigid base repeats: the approach contains the mean displacement, which is nothing if the layer is incompressible.
+/// A layer on a rigid base repeats: the approach contains the mean displacement, which is nothing if the layer is
+/// incompressible.
 #[test]
 fn the_mean_displacement_is_that_of_the_layers() {
     let (surface, grid) = rough(24);

@@ -15,8 +15,8 @@ fn uncorrelated(nx: usize, ny: usize) -> HeightMap {
 }
 
 /// More nodes than a local solution takes in, so that it has to choose: the same events, and states as exact as their
-/// estimates say. Where nodes were looked for within 32 of the shorter sides only, loads were off by 8e-4 on a free half-space,
-/// and one error in fifty exceeded its estimate, by up to 200 times.
+/// estimates say. Where nodes were looked for within 32 of the shorter sides only, loads were off by 8e-4 on a free
+/// half-space, and one error in fifty exceeded its estimate, by up to 200 times.
 #[test]
 fn long_cells_have_the_events_of_the_factor() {
     let surface = uncorrelated(40, 40);
@@ -26,7 +26,8 @@ fn long_cells_have_the_events_of_the_factor() {
         for (name, kernel) in half_spaces(grid).into_iter().take(half_spaces_tried) {
             let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
             let found = states(&surface, &kernel, ConjugateGradient::new(), None);
-            // A window is a large part of so short a path, and long waves of a periodic one are far softer than short ones.
+            // A window is a large part of so short a path, and long waves of a periodic one are far softer than short
+            // ones.
             let allowed = Tolerances {
                 load: if name == "free" { 2e-5 } else { 2e-4 },
                 stiffness: 3e-6,

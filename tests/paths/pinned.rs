@@ -1,8 +1,8 @@
 //! Small paths of every kind, pinned: who changes how events are found sees here whether the paths are still the same.
 //!
-//! Of a path with a factor every bit of every state is pinned. Without a factor the order of events is, and columns are compared with
-//! those of the factor, within what states say of their error. Windows, solutions inside them and convolutions may change by a
-//! fiftieth there, and by two; with a factor not at all.
+//! Of a path with a factor every bit of every state is pinned. Without a factor the order of events is, and columns are
+//! compared with those of the factor, within what states say of their error. Windows, solutions inside them and
+//! convolutions may change by a fiftieth there, and by two; with a factor not at all.
 //!
 //! To print the table of the present code:
 //!
@@ -10,11 +10,12 @@
 //! ASPERITY_PINS=print cargo test --release --test paths -- pinned --nocapture
 //! ```
 //!
-//! With `ASPERITY_PINS=bits` the bits of paths without a factor are compared as well: for changes that should not touch any.
+//! With `ASPERITY_PINS=bits` the bits of paths without a factor are compared as well: for changes that should not touch
+//! any.
 //!
-//! The table changes only together with results that are meant to change, and the commit says why: better estimates, another rule for
-//! ties, fewer windows. Where the last digits change, it says what is computed in another order, and the drivers have run. A change that
-//! only moves code leaves the table as it is.
+//! The table changes only together with results that are meant to change, and the commit says why: better estimates,
+//! another rule for ties, fewer windows. Where the last digits change, it says what is computed in another order, and
+//! the drivers have run. A change that only moves code leaves the table as it is.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::{History, LoadingBuilder};
@@ -198,8 +199,9 @@ fn followed<U: LinearUpdater + Clone>(
     (pin, states)
 }
 
-/// Columns within what states say of their error. That is an estimate and no bound: approaches are off by 2.3 times as much at worst
-/// where nodes yield, and on strips by 5. Other columns within what `without_factor`, `strips` and `hardness_without_factor` measured.
+/// Columns within what states say of their error. That is an estimate and no bound: approaches are off by 2.3 times as
+/// much at worst where nodes yield, and on strips by 5. Other columns within what `without_factor`, `strips` and
+/// `hardness_without_factor` measured.
 fn compare(name: &str, found: &[LoadingState], exact: &[LoadingState]) {
     assert_eq!(found.len(), exact.len(), "{name}");
     let (first, last) = (exact[0].contact, exact.last().unwrap().contact);
@@ -265,8 +267,8 @@ fn small_paths_are_pinned() {
     assert!(changed.is_empty(), "these have changed:\n{}", changed.join("\n"));
 }
 
-/// Name, states, hashes of the events in their order and of the bits of all columns; windows, events taken back, solutions in windows,
-/// and convolutions of iterations.
+/// Name, states, hashes of the events in their order and of the bits of all columns; windows, events taken back,
+/// solutions in windows, and convolutions of iterations.
 type Row = (&'static str, usize, u64, u64, [usize; 4]);
 
 #[rustfmt::skip]

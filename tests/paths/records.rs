@@ -164,8 +164,8 @@ fn states_that_are_not_reached_are_not_recorded() {
     assert!(matches!(beyond, Err(Error::StateNotReached { step: 11, present: 10 })), "{beyond:?}");
 }
 
-/// Targets that a path has passed are refused behind it. Its record knows the states up to there: those of a path that was to
-/// end there.
+/// Targets that a path has passed are refused behind it. Its record knows the states up to there: those of a path that
+/// was to end there.
 #[test]
 fn targets_that_have_been_passed_are_read_and_not_resumed_to() {
     for (name, kernel) in kernels(grid()) {

@@ -57,8 +57,8 @@ pub(crate) fn identical(at: usize, found: &[LoadingState], expected: &[LoadingSt
     }
 }
 
-/// Interrupts a path behind so many states, and the one that goes on from its record behind the next number of them, and so on. What
-/// follows is compared with the path that was not interrupted.
+/// Interrupts a path behind so many states, and the one that goes on from its record behind the next number of them,
+/// and so on. What follows is compared with the path that was not interrupted.
 pub(crate) fn interrupt<U: LinearUpdater + Clone>(
     builder: &LoadingBuilder<'_, U>,
     all: &[LoadingState],
@@ -97,8 +97,8 @@ fn on_threads(threads: usize, work: impl FnOnce() + Send) {
     pool.install(work);
 }
 
-/// With a factor and a hardness, of all nodes and of each, to the yield of the last node: also where windows begin with a solution of the
-/// factor before nodes yielded, on plateaus, and in windows that watch one node.
+/// With a factor and a hardness, of all nodes and of each, to the yield of the last node: also where windows begin with
+/// a solution of the factor before nodes yielded, on plateaus, and in windows that watch one node.
 #[test]
 fn with_a_factor_and_a_hardness() {
     with_a_hardness(&RecursiveCholesky::new());

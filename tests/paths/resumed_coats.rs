@@ -42,7 +42,8 @@ fn on<'a, U: LinearUpdater>(
     LoadingSolver::builder(heights, kernel).updater(updater).max_area_fraction(0.9)
 }
 
-/// Every bit of what was not interrupted, whatever the updater, at any event: behind touches and releases, and in the middle of windows.
+/// Every bit of what was not interrupted, whatever the updater, at any event: behind touches and releases, and in the
+/// middle of windows.
 #[test]
 fn the_same_updater_has_the_same_bits() {
     fn holds<U: LinearUpdater + Clone>(builder: &LoadingBuilder<'_, U>, seed: u64) -> usize {
@@ -67,8 +68,9 @@ fn the_same_updater_has_the_same_bits() {
     assert!(releases.iter().all(|&count| count > 40));
 }
 
-/// What is compared of two paths that are both right: the same events, approaches within what states say, and loads within some of the 10⁻⁵
-/// that a path without a factor may be off, behind the first few, whose loads are nearly nothing.
+/// What is compared of two paths that are both right: the same events, approaches within what states say, and loads
+/// within some of the 10⁻⁵ that a path without a factor may be off, behind the first few, whose loads are nearly
+/// nothing.
 fn agree(name: &str, inherited: f64, found: &[LoadingState], exact: &[LoadingState]) {
     assert_eq!(found.len(), exact.len(), "{name}");
     for (found, exact) in found.iter().zip(exact) {
@@ -103,8 +105,9 @@ fn goes_on<U: LinearUpdater + Clone>(
     }
 }
 
-/// What a state without a factor may be off is no tension and no overlap to a factor that goes on from there, which has no such errors
-/// once it has found a solution without either. Paths broke off: "pressure of node (30, 17) is -46", in Pa of GPa.
+/// What a state without a factor may be off is no tension and no overlap to a factor that goes on from there, which has
+/// no such errors once it has found a solution without either. Paths broke off: "pressure of node (30, 17) is -46", in
+/// Pa of GPa.
 #[test]
 fn another_updater_goes_on_from_what_states_say() {
     for (k, (name, kernel, heights)) in cases().enumerate() {

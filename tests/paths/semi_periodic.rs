@@ -22,8 +22,8 @@ fn rough(nx: usize, ny: usize) -> (SelfAffine, Grid) {
     (SelfAffine::new(0.8, 0.5 * side, 4e-5, amplitude, 5).unwrap(), grid)
 }
 
-/// A cylinder along the period is a plane problem: Hertz' line contact, and the approach from its reference length,
-/// δ = 2F/(πE*L) (ln(2R/a) + 1/2): the displacement by half an ellipse of pressure of the width 2a, in the middle of it.
+/// A cylinder along the period is a plane problem: Hertz' line contact, and the approach from its reference length, δ =
+/// 2F/(πE*L) (ln(2R/a) + 1/2): the displacement by half an ellipse of pressure of the width 2a, in the middle of it.
 #[test]
 fn a_cylinder_is_a_line_contact() {
     let (radius, e_star) = (400.0, 2.0);
@@ -45,22 +45,23 @@ fn a_cylinder_is_a_line_contact() {
             let mut solver =
                 FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-10).build().unwrap();
             let found = solver.solve(line * period as f64).unwrap();
-            // Cells of a sixtieth of the width: their error is of second order but for the edge, some (a/Δ)^(−3/2) = 0.006 of the
-            // greatest pressure, and less in the middle.
+            // Cells of a sixtieth of the width: their error is of second order but for the edge, some (a/Δ)^(−3/2) =
+            // 0.006 of the greatest pressure, and less in the middle.
             let error = found.fields.max_pressure() / hertz.max_pressure(line) - 1.0;
             assert!(error.abs() < 1e-3, "{along:?} {period}: {error:e}");
             let reference = kernel.reference_length();
             let logarithm = (2.0 * reference / half_width).ln() + 0.5;
             let approach = 2.0 * line / (PI * e_star) * logarithm;
-            // Cells half a cell from the middle: (Δ/2)²/2R more of the height, 10⁻⁵ of the approach; and the edge again.
+            // Cells half a cell from the middle: (Δ/2)²/2R more of the height, 10⁻⁵ of the approach; and the edge
+            // again.
             let error = found.contact.approach / approach - 1.0;
             assert!(error.abs() < 1e-3, "{along:?} {period}: {error:e}");
             // dδ/dF = 2/(πE*) (ln(2R/a) + 1/2 − 1/2), since a² grows as F.
             let stiffness =
                 PI * e_star * period as f64 / (2.0 * (2.0 * reference / half_width).ln());
             let found = found.contact.contact_stiffness.unwrap();
-            // The contact grows in steps of a cell on either side: between two of them a is too small by up to a cell, a thirtieth of it,
-            // over a logarithm of 2.8 and more.
+            // The contact grows in steps of a cell on either side: between two of them a is too small by up to a cell,
+            // a thirtieth of it, over a logarithm of 2.8 and more.
             assert!(
                 (found / stiffness - 1.0).abs() < 0.015,
                 "{along:?} {period}: {found} {stiffness}"
@@ -112,8 +113,9 @@ fn paths_are_those_of_single_loads() {
     }
 }
 
-/// A surface that repeats in both directions, with a wide flat margin, is pressed on a half-space that repeats along x, and on one that repeats
-/// both ways: with a wide enough margin the mean gap in the middle differs by a uniform displacement alone. So do events of one ridge.
+/// A surface that repeats in both directions, with a wide flat margin, is pressed on a half-space that repeats along x,
+/// and on one that repeats both ways: with a wide enough margin the mean gap in the middle differs by a uniform
+/// displacement alone. So do events of one ridge.
 #[test]
 fn a_ridge_on_a_wide_periodic_grid_is_the_same() {
     let (nx, ny) = (24, 24);

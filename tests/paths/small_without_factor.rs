@@ -55,8 +55,8 @@ fn nodes_of_the_same_height_are_told_apart() {
     }
 }
 
-/// The estimate of an approach covers what it is off by, also where each event is found by a solution of its own: on bodies that
-/// promise nothing, an elastic half-space among them.
+/// The estimate of an approach covers what it is off by, also where each event is found by a solution of its own: on
+/// bodies that promise nothing, an elastic half-space among them.
 #[test]
 fn single_events_say_what_they_are_off_by() {
     let grid = Grid::new(6, 7, 1.0, 1.0).unwrap();

@@ -1,4 +1,5 @@
-//! Paths without a factor on bodies on which nodes may leave: windows until one does, beside paths of single events with a factor.
+//! Paths without a factor on bodies on which nodes may leave: windows until one does, beside paths of single events
+//! with a factor.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::History;
@@ -48,9 +49,9 @@ const CASES: [([f64; 4], u64); 9] = [
     ([48.0, 10.0, 4.0, 4.0], 11),
 ];
 
-/// Windows have the events of single steps with a factor, each of which has a solution that is exact to rounding: touches and releases,
-/// in the same order. Approaches are off by no more than states say, and loads by a part of some 10⁻⁵, which is asked to be 10⁻⁴; at least
-/// behind the first few, whose loads are nearly nothing.
+/// Windows have the events of single steps with a factor, each of which has a solution that is exact to rounding:
+/// touches and releases, in the same order. Approaches are off by no more than states say, and loads by a part of some
+/// 10⁻⁵, which is asked to be 10⁻⁴; at least behind the first few, whose loads are nearly nothing.
 #[test]
 fn windows_have_the_events_of_single_steps() {
     let (mut releases, mut events, mut convolutions) = (0, 0, 0);
@@ -85,8 +86,8 @@ fn windows_have_the_events_of_single_steps() {
     assert!(convolutions < 3 * events, "{convolutions} {events}");
 }
 
-/// A path that hands over to iterations as soon as these have windows has the same events, and one that ends and goes on, or is resumed
-/// from its states, as well.
+/// A path that hands over to iterations as soon as these have windows has the same events, and one that ends and goes
+/// on, or is resumed from its states, as well.
 #[test]
 fn paths_hand_over_and_go_on() {
     let (n, nodes) = (80, 1200);

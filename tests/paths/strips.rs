@@ -1,5 +1,5 @@
-//! Domains of a few rows, and surfaces that repeat themselves: where the nearest nodes do not say what a distant one does, and
-//! where several nodes touch at once.
+//! Domains of a few rows, and surfaces that repeat themselves: where the nearest nodes do not say what a distant one
+//! does, and where several nodes touch at once.
 
 use crate::without_factor::{half_spaces, states};
 use asperity::kernel::{Base, Layer, Layered, LayeredBody, SemiPeriodicBoussinesq};
@@ -34,9 +34,9 @@ fn greatest_differences(found: &[LoadingState], exact: &[LoadingState]) -> [f64;
     greatest
 }
 
-/// On a periodic strip of two rows a local solution leaves out half of a pivot. Windows were as long as on squares all the same: some
-/// sixty places differed from those of a factor, loads were off by 1 % and interfacial stiffnesses by 10 %, and errors exceeded
-/// their estimate up to 400 times. Now windows have as few events as they need.
+/// On a periodic strip of two rows a local solution leaves out half of a pivot. Windows were as long as on squares all
+/// the same: some sixty places differed from those of a factor, loads were off by 1 % and interfacial stiffnesses by 10
+/// %, and errors exceeded their estimate up to 400 times. Now windows have as few events as they need.
 #[test]
 fn strips_have_the_events_of_the_factor() {
     let grid = Grid::new(400, 2, 1.0, 1.0).unwrap();
@@ -49,8 +49,8 @@ fn strips_have_the_events_of_the_factor() {
         let mut exceeded = 0;
         for (state, expected) in found.iter().zip(&exact) {
             let error = (state.contact.approach - expected.contact.approach).abs();
-            // Both solutions may be off by the tolerance of 10⁻¹⁰ of the approach that is computed with, some 100 times that of
-            // the mean planes late on a path.
+            // Both solutions may be off by the tolerance of 10⁻¹⁰ of the approach that is computed with, some 100 times
+            // that of the mean planes late on a path.
             let tolerance = 1e-8 * expected.contact.approach;
             exceeded += usize::from(error > state.approach_error + tolerance);
             assert!(
@@ -78,8 +78,8 @@ fn strips_have_the_events_of_the_factor() {
     assert!(found.iter().zip(&exact).all(|(a, b)| a.node == b.node));
 }
 
-/// On half-spaces that repeat along a few rows, and on layers that keep their volume, what local solutions leave out is a part of what the
-/// end of a window shows. One state in twenty was beyond its estimate, by up to eleven times.
+/// On half-spaces that repeat along a few rows, and on layers that keep their volume, what local solutions leave out is
+/// a part of what the end of a window shows. One state in twenty was beyond its estimate, by up to eleven times.
 #[test]
 fn what_windows_leave_out_is_part_of_the_estimate() {
     let mut problems: Vec<(String, HeightMap, Box<dyn InfluenceKernel>)> = Vec::new();
@@ -128,7 +128,8 @@ fn tiles(n: usize) -> (HeightMap, Grid) {
     (HeightMap::new(tiled).unwrap(), grid)
 }
 
-/// The four copies of each node of a tile, as they follow each other on a path: one after the other, in the order of their indices.
+/// The four copies of each node of a tile, as they follow each other on a path: one after the other, in the order of
+/// their indices.
 fn orbits(states: &[LoadingState], n: usize) -> Vec<Vec<&LoadingState>> {
     let mut orbits: HashMap<_, Vec<&LoadingState>> = HashMap::new();
     for state in states {
@@ -189,8 +190,8 @@ fn nodes_of_tiles_touch_in_the_order_of_their_indices() {
     }
 }
 
-/// What a state says of its approach is of the approach that it reports: not of the one that is computed with, which contains the
-/// displacement under the load and is wrong by a hundred times as much late on a path.
+/// What a state says of its approach is of the approach that it reports: not of the one that is computed with, which
+/// contains the displacement under the load and is wrong by a hundred times as much late on a path.
 #[test]
 fn errors_are_those_of_the_approach_of_the_mean_planes() {
     let grid = Grid::new(48, 48, 1.0, 1.0).unwrap();

@@ -27,8 +27,9 @@ fn followed<U: LinearUpdater>(
     path.max_area_fraction(fraction).build().unwrap().map(Result::unwrap).collect()
 }
 
-/// At the load half way to the next event the contact behind each event solves the contact problem: no node of it is pulled, and no other overlaps. There
-/// is no other solution, for the matrix is positive definite. Events closer than their estimates are not told apart. Returns the releases.
+/// At the load half way to the next event the contact behind each event solves the contact problem: no node of it is
+/// pulled, and no other overlaps. There is no other solution, for the matrix is positive definite. Events closer than
+/// their estimates are not told apart. Returns the releases.
 fn solves_the_contact_problem(
     (matrix, area): (&DMatrix<f64>, f64),
     heights: &HeightMap,
@@ -127,7 +128,8 @@ fn paths_solve_the_contact_problem_at_every_event() {
     assert!(releases > 100 && promised[1] > 20, "{releases} {promised:?}");
 }
 
-/// 32 × 32 nodes on glass of 0.7 sides on rubber: it had 307 events and no release without a factor, and broke off with one.
+/// 32 × 32 nodes on glass of 0.7 sides on rubber: it had 307 events and no release without a factor, and broke off with
+/// one.
 #[test]
 fn glass_on_rubber() {
     let grid = Grid::square(32, 1e-3).unwrap();
@@ -175,7 +177,8 @@ impl InfluenceKernel for Promising {
     }
 }
 
-/// Whatever a kernel promises, no window ends in tension: every state up to the error is one without, and the error names the node.
+/// Whatever a kernel promises, no window ends in tension: every state up to the error is one without, and the error
+/// names the node.
 #[test]
 fn no_window_ends_in_tension() {
     use asperity::updater::RecursiveCholesky;
@@ -198,8 +201,8 @@ fn no_window_ends_in_tension() {
                 broken = true;
                 continue;
             };
-            // The last state of a window, which lies before its end: what an estimate of its approach leaves of pressures, as a path that is
-            // resumed allows, and rounding of heights.
+            // The last state of a window, which lies before its end: what an estimate of its approach leaves of
+            // pressures, as a path that is resumed allows, and rounding of heights.
             if path.waiting() > 0 {
                 continue;
             }
@@ -225,8 +228,8 @@ fn no_window_ends_in_tension() {
     }
 }
 
-/// Three nodes in a row that press the one in the middle out, slowly: with 1, 3/4 and 1/2 − 3/20000 their rates are 2/3, −4·10⁻⁴ and 2/3 of
-/// what one would have alone. No other node feels another one.
+/// Three nodes in a row that press the one in the middle out, slowly: with 1, 3/4 and 1/2 − 3/20000 their rates are
+/// 2/3, −4·10⁻⁴ and 2/3 of what one would have alone. No other node feels another one.
 struct Row(Grid);
 
 impl InfluenceKernel for Row {
@@ -249,8 +252,8 @@ impl InfluenceKernel for Row {
     }
 }
 
-/// Where more nodes touch together than can be watched, the end is looked at as that of a window is. On the way there the rate of the middle
-/// one is within what rates may be off, and its tension is not.
+/// Where more nodes touch together than can be watched, the end is looked at as that of a window is. On the way there
+/// the rate of the middle one is within what rates may be off, and its tension is not.
 #[test]
 fn no_plateau_ends_in_tension() {
     let grid = Grid::new(32, 40, 1.0, 1.0).unwrap();

@@ -300,8 +300,8 @@ fn full_contact_is_full() {
     }
 }
 
-/// Where an approach is an estimate, the node that touches may be pulled by what it is off: its pressure is zero. Without a factor and
-/// behind a hand-over.
+/// Where an approach is an estimate, the node that touches may be pulled by what it is off: its pressure is zero.
+/// Without a factor and behind a hand-over.
 #[test]
 fn no_pressure_is_negative() {
     let grid = Grid::square(32, 1.0).unwrap();

@@ -39,8 +39,8 @@ fn a_sphere_without_a_mesh() {
         assert!(relative(exact.dissipation(force), lost) < 1e-11, "{share}");
 
         let cycle = joint.cycle(force).unwrap();
-        // Chords of a curve: (Δδ/δ)²/8 of its load at knots 40 000 steps apart, 1e-9, over the tenth of the amplitude, and
-        // that over a hundredth, which is the share that is lost, for the dissipation.
+        // Chords of a curve: (Δδ/δ)²/8 of its load at knots 40 000 steps apart, 1e-9, over the tenth of the amplitude,
+        // and that over a hundredth, which is the share that is lost, for the dissipation.
         assert!(relative(cycle.displacement, displacement) < 1e-8, "{share}");
         assert!(relative(cycle.dissipation, lost) < 1e-6, "{share}");
         let state = joint.monotone(force).unwrap();
@@ -75,7 +75,8 @@ fn an_exponential_law() {
     }
 }
 
-/// Hertz' path on a mesh: displacements err as the approach of the path does, dissipations by the thinness of the slip ring in cells.
+/// Hertz' path on a mesh: displacements err as the approach of the path does, dissipations by the thinness of the slip
+/// ring in cells.
 #[test]
 fn a_sphere_on_a_mesh() {
     let n = 48;

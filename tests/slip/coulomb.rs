@@ -1,4 +1,5 @@
-//! Joints against an incremental solution of Coulomb's law on all nodes, which knows nothing of a path: dense, event by event.
+//! Joints against an incremental solution of Coulomb's law on all nodes, which knows nothing of a path: dense, event by
+//! event.
 
 use asperity::bed::Bed;
 use asperity::slip::{Friction, SlipHistory};
@@ -8,8 +9,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::joints::rough_path;
 
-/// Tractions and total slips of nodes. In each step the slip of a node goes on only where its traction is at the limit, and in
-/// its direction.
+/// Tractions and total slips of nodes. In each step the slip of a node goes on only where its traction is at the limit,
+/// and in its direction.
 struct Coulomb {
     /// Displacements under unit tractions.
     influence: DMatrix<f64>,
@@ -39,8 +40,9 @@ impl Coulomb {
         }
     }
 
-    /// To a pressure and a tangential force, with these nodes in contact throughout the step: block principal pivoting on the
-    /// state of each node, -1 and 1 where it slips, with single pivots where blocks do not settle (Júdice & Pires 1994).
+    /// To a pressure and a tangential force, with these nodes in contact throughout the step: block principal pivoting
+    /// on the state of each node, -1 and 1 where it slips, with single pivots where blocks do not settle (Júdice &
+    /// Pires 1994).
     fn step(&mut self, pressure: &DVector<f64>, contact: &[usize], force: f64) {
         let limit = pressure * self.friction;
         let bounds = part(&limit, contact);
@@ -229,8 +231,8 @@ fn at_constant_load() {
             for seed in [1, 2] {
                 let errors = compare(kernel.as_ref(), seed, corners);
                 println!("{name}, {k}, seed {seed}: {errors:?}");
-                // Dense solutions lose the condition number, below 1e3 on these grids, from 1e-16; dissipations are differences
-                // of ten times what is lost.
+                // Dense solutions lose the condition number, below 1e3 on these grids, from 1e-16; dissipations are
+                // differences of ten times what is lost.
                 assert!(
                     errors.iter().all(|error| *error < 1e-11),
                     "{name}, {k}, {seed}: {errors:?}"
@@ -248,8 +250,8 @@ fn under_both_loads() {
                 let errors = compare(kernel.as_ref(), seed, corners);
                 println!("{name}, {k}, seed {seed}: {errors:?}");
                 assert!(errors[0] < 1e-11 && errors[1] < 1e-11, "{name}, {k}, {seed}: {errors:?}");
-                // The dense account has the mean limit of a step, which errs by the square of its length: by some per cent where
-                // hardly anything slips.
+                // The dense account has the mean limit of a step, which errs by the square of its length: by some per
+                // cent where hardly anything slips.
                 assert!(errors[2] < 0.05, "{name}, {k}, {seed}: {errors:?}");
             }
         }

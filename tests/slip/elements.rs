@@ -1,5 +1,5 @@
-//! The joint as elements of Jenkins, each with a spring and a slider of its own: another description of the same thing, for any
-//! history of approach and displacement.
+//! The joint as elements of Jenkins, each with a spring and a slider of its own: another description of the same thing,
+//! for any history of approach and displacement.
 
 use asperity::bed::{Bed, BedState};
 use asperity::slip::{Friction, PartialSlip, SlipHistory};
@@ -66,8 +66,8 @@ impl Elements {
     }
 }
 
-/// Both descriptions through corners (P, T), stopping at the events on the way; how far tangential loads differ over μP, and
-/// dissipations over the whole.
+/// Both descriptions through corners (P, T), stopping at the events on the way; how far tangential loads differ over
+/// μP, and dissipations over the whole.
 fn compare(bed: &Bed, friction: Friction, corners: &[(f64, f64)], fine: usize) -> (f64, f64) {
     let mut joint = SlipHistory::new(bed, friction);
     let mut elements = Elements::new(bed, friction);
@@ -145,16 +145,16 @@ proptest! {
             let (force, _) = compare(&bed, friction, &all, 1);
             // Sums over 134 elements, through up to 1000 steps.
             prop_assert!(force < 1e-11, "{force:e}");
-            // Where the load changes the elements' own account is of second order in the step: a tenth of what is lost in steps from event to
-            // event, at worst, and a sixteenth of that in quarters of them.
+            // Where the load changes the elements' own account is of second order in the step: a tenth of what is lost
+            // in steps from event to event, at worst, and a sixteenth of that in quarters of them.
             let (_, lost) = compare(&bed, friction, &all, 4);
             prop_assert!(lost < 0.02, "{lost:e}");
         }
     }
 }
 
-/// Where a load changes by its last digit, or a little more, and the tangential load by most of what friction bears: the joint is that of a
-/// constant load, to what P changes by.
+/// Where a load changes by its last digit, or a little more, and the tangential load by most of what friction bears:
+/// the joint is that of a constant load, to what P changes by.
 #[test]
 fn loads_that_hardly_change_are_constant() {
     for kernel in kernels() {
@@ -195,7 +195,8 @@ fn loads_that_hardly_change_are_constant() {
     }
 }
 
-/// At constant load the account of the elements is exact, and where the load changes it converges to the joint's by the second order.
+/// At constant load the account of the elements is exact, and where the load changes it converges to the joint's by the
+/// second order.
 #[test]
 fn dissipations_converge_to_the_joint_s() {
     let [kernel, _] = kernels();

@@ -43,8 +43,8 @@ fn assert_same(a: &SlipState, b: &SlipState, tolerance: f64, scale: [f64; 2]) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// The tangential load is the one asked for; energy that is lost never comes back, and what is neither lost nor stored has
-    /// been done by T; ratios stay within friction.
+    /// The tangential load is the one asked for; energy that is lost never comes back, and what is neither lost nor
+    /// stored has been done by T; ratios stay within friction.
     #[test]
     fn loads_and_energies_add_up(seed in 0_u64..8, steps in steps()) {
         let (_, history) = path(seed);

@@ -22,8 +22,8 @@ pub(crate) fn read(builder: LoadingBuilder<'_>) -> (LoadingSolver, History) {
     (path, history)
 }
 
-/// A history of N nodes that touch at these approaches, each adding to the stiffness, so that the load at the knots is that of
-/// a curve W(δ).
+/// A history of N nodes that touch at these approaches, each adding to the stiffness, so that the load at the knots is
+/// that of a curve W(δ).
 pub(crate) fn of_curve(approaches: &[f64], load: impl Fn(f64) -> f64) -> History {
     let nodes = approaches.len();
     let grid = Grid::new(256, nodes / 256 + 1, 1.0, 1.0).unwrap();

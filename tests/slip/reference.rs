@@ -1,5 +1,5 @@
-//! A history of (P, T) on a rough surface, solved by a bound-constrained quadratic programme that stops at every event and shares
-//! no code with this crate: `tests/data/slip`.
+//! A history of (P, T) on a rough surface, solved by a bound-constrained quadratic programme that stops at every event
+//! and shares no code with this crate: `tests/data/slip`.
 
 use std::path::Path;
 
@@ -16,8 +16,8 @@ const FRICTION: f64 = 0.4;
 const COMPLIANCE_RATIO: f64 = 1.2142857142857144;
 const PRELOAD: f64 = 9.75e-07;
 
-/// Both solvers err by the condition number of the contact, some 10³, times 10⁻¹⁶, and the dissipation by that over the share of
-/// the work that is lost: 10⁻² at least.
+/// Both solvers err by the condition number of the contact, some 10³, times 10⁻¹⁶, and the dissipation by that over the
+/// share of the work that is lost: 10⁻² at least.
 const EXACT: f64 = 1e-11;
 const LOST: f64 = 1e-10;
 

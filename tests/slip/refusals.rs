@@ -108,7 +108,8 @@ fn histories_that_slide() {
     assert_eq!((apart.displacement, apart.tangential_load), (0.0, 0.0));
 }
 
-/// Without a factor the approach of events is an estimate: a dissipation is refused where it would be made of its errors.
+/// Without a factor the approach of events is an estimate: a dissipation is refused where it would be made of its
+/// errors.
 #[test]
 fn dissipations_within_the_error_of_the_path() {
     let (_, history) = path();

@@ -75,7 +75,8 @@ fn each_plane_carries_the_load() -> Result<(), Error> {
         for (field, ratio) in [(&field.zz, -1.0), (&field.xz, -x), (&field.yz, -y)] {
             assert!((field.sum() / total - ratio).abs() < 1e-12, "{z}");
         }
-        // Beyond the grid there is less than beyond a circle that fits in, about a point at which all load might be: 0.2 from the border.
+        // Beyond the grid there is less than beyond a circle that fits in, about a point at which all load might be:
+        // 0.2 from the border.
         let carried = -free.at_depth(&load, z)?.zz.sum() / total;
         let beyond = (1.0 + (0.2_f64 / z).powi(2)).powf(-1.5);
         assert!(carried < 1.0 + 1e-3 && carried > 1.0 - beyond - 1e-3, "{z}: {carried}");

@@ -39,8 +39,8 @@ fn kernels(grid: Grid, body: &LayeredBody) -> Result<Vec<Layered>, Error> {
     ])
 }
 
-/// A layer of the material below it changes nothing. Within it that is the half-space itself; below it, all comes from the transfer
-/// matrices, Hankel transforms and integrals over cells.
+/// A layer of the material below it changes nothing. Within it that is the half-space itself; below it, all comes from
+/// the transfer matrices, Hankel transforms and integrals over cells.
 #[test]
 fn layers_of_one_material_are_a_half_space() -> Result<(), Error> {
     for (shape, sides) in [((7, 6), (1.0, 1.0)), ((5, 8), (1.0, 0.6))] {
@@ -63,7 +63,8 @@ fn layers_of_one_material_are_a_half_space() -> Result<(), Error> {
                 for (c, (a, b)) in
                     found.components().into_iter().zip(expected.components()).enumerate()
                 {
-                    // Tables err by 2·10⁻¹³ of point loads of 1/z², and sums over 42 cells by some 10⁻¹² of the greatest.
+                    // Tables err by 2·10⁻¹³ of point loads of 1/z², and sums over 42 cells by some 10⁻¹² of the
+                    // greatest.
                     let error = (a - b).amax();
                     assert!(error < 2e-11, "{boundary:?} {z} {c}: {error:e}");
                 }
@@ -120,10 +121,12 @@ fn interfaces_hold_together() -> Result<(), Error> {
     Ok(())
 }
 
-/// Under a wave of pressure of 1 on one layer on a half-space: minus σzz, σxz over i, σxx along the wave, at the depth z, and σyy across.
-/// Airy's functions (A + B z) e^(−qz) + (C + D z) e^(qz) and (E + F z) e^(−qz), whose factors six conditions give.
+/// Under a wave of pressure of 1 on one layer on a half-space: minus σzz, σxz over i, σxx along the wave, at the depth
+/// z, and σyy across. Airy's functions (A + B z) e^(−qz) + (C + D z) e^(qz) and (E + F z) e^(−qz), whose factors six
+/// conditions give.
 fn one_layer(q: f64, z: f64, ((e1, nu1), h): ((f64, f64), f64), (e2, nu2): (f64, f64)) -> [f64; 4] {
-    // φ and its derivatives by depth, of the four functions; e^(qz) is counted from the interface, so that nothing overflows.
+    // φ and its derivatives by depth, of the four functions; e^(qz) is counted from the interface, so that nothing
+    // overflows.
     let functions = |z: f64| -> [[f64; 4]; 4] {
         let (down, up) = ((-q * z).exp(), (q * (z - h)).exp());
         [
@@ -203,7 +206,8 @@ fn waves_are_those_of_airy() -> Result<(), Error> {
                         (stress.yy, (along * cy * cy + across * cx * cx) * cos),
                         (stress.xy, (along - across) * cx * cy * cos),
                     ] {
-                        // The matrix of six has a condition number of some 10⁶ with functions from 1 to e^(−qh), of up to 27.
+                        // The matrix of six has a condition number of some 10⁶ with functions from 1 to e^(−qh), of up
+                        // to 27.
                         assert!(
                             (found - expected).abs() < 1e-8,
                             "{h} ({kx}, {ky}) {z}: {found} {expected}"
@@ -216,7 +220,8 @@ fn waves_are_those_of_airy() -> Result<(), Error> {
     Ok(())
 }
 
-/// A coated sphere: stresses on the axis by an own Hankel integral of Airy's waves, whose load is 2 (sin q − q cos q)/q³ of Hertz's.
+/// A coated sphere: stresses on the axis by an own Hankel integral of Airy's waves, whose load is 2 (sin q − q cos
+/// q)/q³ of Hertz's.
 #[test]
 fn a_coated_sphere() -> Result<(), Error> {
     let h = 0.4;

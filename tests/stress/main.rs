@@ -12,8 +12,8 @@ mod surveys;
 use asperity::Grid;
 use nalgebra::DMatrix;
 
-/// Hertz's pressure of radius 1 and greatest value 1 on cells of width 1/`cells`, averaged over each cell, about the node in the middle of a
-/// grid that is `reach` cells wide on either side.
+/// Hertz's pressure of radius 1 and greatest value 1 on cells of width 1/`cells`, averaged over each cell, about the
+/// node in the middle of a grid that is `reach` cells wide on either side.
 fn hertz(cells: usize, reach: usize) -> (Grid, DMatrix<f64>) {
     const PARTS: usize = 16;
     let n = 2 * reach + 1;

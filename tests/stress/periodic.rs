@@ -14,7 +14,8 @@ fn pressure(nx: usize, ny: usize) -> DMatrix<f64> {
     })
 }
 
-/// xx, yy, zz, yz, xz, xy below a wave of pressure of 1: Airy's function of a plane through the wave, and ν of it across.
+/// xx, yy, zz, yz, xz, xy below a wave of pressure of 1: Airy's function of a plane through the wave, and ν of it
+/// across.
 fn below_a_wave((qx, qy): (f64, f64), z: f64, nu: f64) -> [Complex<f64>; 6] {
     let q = qx.hypot(qy);
     let (c, s) = (qx / q, qy / q);
@@ -93,7 +94,8 @@ fn cells_that_repeat_are_fourier_series() -> Result<(), Error> {
             let expected = series(&pressure, sides, z, nu);
             for (c, (found, expected)) in found.components().into_iter().zip(&expected).enumerate()
             {
-                // What is extrapolated errs by 10⁻¹², and its weights of up to 1023 times roundings by some 10⁻¹³ for each of up to 400 terms.
+                // What is extrapolated errs by 10⁻¹², and its weights of up to 1023 times roundings by some 10⁻¹³ for
+                // each of up to 400 terms.
                 let error = (found - expected).amax();
                 assert!(error < 1e-11, "{shape:?} {nu} {z} {c}: {error:e}");
             }
@@ -102,7 +104,8 @@ fn cells_that_repeat_are_fourier_series() -> Result<(), Error> {
     Ok(())
 }
 
-/// With a kernel of the waves of the grid alone, a wave answers as Westergaard's: at the depth z, with −(1 − q z) e^(−q z) along it.
+/// With a kernel of the waves of the grid alone, a wave answers as Westergaard's: at the depth z, with −(1 − q z) e^(−q
+/// z) along it.
 #[test]
 fn waves_of_the_grid() -> Result<(), Error> {
     let (n, nu, z) = (12, 0.3, 0.4);

@@ -102,7 +102,8 @@ fn rectangles_are_integrals_of_point_forces() -> Result<(), Error> {
                         for (c, (field, expected)) in
                             found.components().iter().zip(expected).enumerate()
                         {
-                            // Gauss's rule on parts of 1/16 of a cell, 1/5 of the least depth, and the shift of 10⁻⁹ times gradients of some 3.
+                            // Gauss's rule on parts of 1/16 of a cell, 1/5 of the least depth, and the shift of 10⁻⁹
+                            // times gradients of some 3.
                             let error = field[(ix, iy)] - expected;
                             assert!(
                                 error.abs() < 2e-8,
@@ -117,8 +118,8 @@ fn rectangles_are_integrals_of_point_forces() -> Result<(), Error> {
     Ok(())
 }
 
-/// A square on the surface: minus the pressure below it, and sideways (1 + 2ν)/2 of it in its middle; outside, what compresses one way pulls
-/// the other.
+/// A square on the surface: minus the pressure below it, and sideways (1 + 2ν)/2 of it in its middle; outside, what
+/// compresses one way pulls the other.
 #[test]
 fn the_surface_itself() -> Result<(), Error> {
     let nu = 0.3;

@@ -29,7 +29,8 @@ fn the_axis_of_a_sphere_converges() -> Result<(), Error> {
                 let error = (middle.xx - radial).hypot(middle.zz - axial);
                 errors.push(error.max((middle.yy - radial).hypot(middle.zz - axial)));
             }
-            // From the second derivative of the pressure, times the width squared over 24, and from the ring at the edge, where there is none.
+            // From the second derivative of the pressure, times the width squared over 24, and from the ring at the
+            // edge, where there is none.
             assert!(errors[2] < 1.5e-3, "{nu} {z}: {errors:?}");
             assert!(
                 errors[0] > 3.0 * errors[1] && errors[1] > 3.0 * errors[2],
@@ -108,9 +109,10 @@ fn below_a_cylinder() -> Result<(), Error> {
     Ok(())
 }
 
-/// A sphere that slides: friction moves the greatest von Mises stress to the surface, at its trailing edge. On the surface below the middle
-/// the stresses are those of Hamilton (Proc. Inst. Mech. Eng. 197C (1983) 53): the traction q₀ √(1 − r²) along x adds
-/// σxx = −q₀ π (4 + ν) x / 8 and σyy = −3 q₀ π ν x / 8, σxy = q₀ π (ν − 2) y / 8 inside the contact.
+/// A sphere that slides: friction moves the greatest von Mises stress to the surface, at its trailing edge. On the
+/// surface below the middle the stresses are those of Hamilton (Proc. Inst. Mech. Eng. 197C (1983) 53): the traction q₀
+/// √(1 − r²) along x adds σxx = −q₀ π (4 + ν) x / 8 and σyy = −3 q₀ π ν x / 8, σxy = q₀ π (ν − 2) y / 8 inside the
+/// contact.
 #[test]
 fn a_sliding_sphere() -> Result<(), Error> {
     use std::f64::consts::PI;

@@ -31,7 +31,8 @@ fn depths_reach_from_a_tenth_of_a_cell_to_a_patch() -> Result<(), Error> {
     Ok(())
 }
 
-/// Where many small patches press together, the greatest stress may lie deeper than any of them is wide: depths go on until it is found.
+/// Where many small patches press together, the greatest stress may lie deeper than any of them is wide: depths go on
+/// until it is found.
 #[test]
 fn what_lies_deep_is_found() -> Result<(), Error> {
     // Every second node of a Hertzian pressure of the same load: nodes are patches.
@@ -43,7 +44,8 @@ fn what_lies_deep_is_found() -> Result<(), Error> {
     let deepest = survey.depths.last().unwrap().depth;
     assert!(deepest > survey.greatest(Measure::VonMises).depth);
     let spots = body.survey(&pressure, None)?;
-    // The spots themselves yield first, and nothing deeper is more: the depths are those of patches that touch at corners.
+    // The spots themselves yield first, and nothing deeper is more: the depths are those of patches that touch at
+    // corners.
     assert!(spots.greatest(Measure::VonMises).value > survey.greatest(Measure::VonMises).value);
     // The load is that of all depths and measures the greatest of all nodes.
     for depth in &survey.depths {

@@ -6,7 +6,8 @@ use std::time::SystemTime;
 
 use serde_json::{Map, Value, json};
 
-/// A table that a page can show: its file, what it is, its column along x (the first one if that is empty), and those that are drawn.
+/// A table that a page can show: its file, what it is, its column along x (the first one if that is empty), and those
+/// that are drawn.
 struct Kind {
     file: &'static str,
     title: &'static str,

@@ -20,7 +20,8 @@ pub(crate) fn planes(values: &[u32]) -> Value {
     json!({"count": values.len(), "planes": count, "data": deflated(&bytes)})
 }
 
-/// The same for numbers of which each is near the one before: by their differences, small ones first whatever their sign.
+/// The same for numbers of which each is near the one before: by their differences, small ones first whatever their
+/// sign.
 pub(crate) fn differences(values: &[i32]) -> Value {
     let mut before = 0_i32;
     let change = |&value: &i32| {

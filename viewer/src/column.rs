@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 
 use crate::blob::differences;
 
-/// Numbers are kept as whole multiples of this in their logarithm: half of it is how far they are off, relatively. A page prints five digits.
+/// Numbers are kept as whole multiples of this in their logarithm: half of it is how far they are off, relatively. A
+/// page prints five digits.
 const STEP: f64 = 2e-5;
 /// The same for a quantity with negative values, relative to the greatest.
 const PART: f64 = 1e-7;

@@ -155,7 +155,8 @@ pub(crate) fn certificate(certificate: &Certificate, last: &LoadingState) -> Vec
     facts
 }
 
-/// What looks wrong with the surface, the bodies, and the last state, of which the pressure is known where it can be computed.
+/// What looks wrong with the surface, the bodies, and the last state, of which the pressure is known where it can be
+/// computed.
 pub(crate) fn warnings(
     record: &LoadingRecord,
     pressure: Option<&DMatrix<f64>>,

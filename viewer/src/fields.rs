@@ -18,7 +18,8 @@ const LETTERS: usize = 250_000;
 /// Letters that a page has at most for each node of a larger grid, if it can: 1 MB on 256 × 256 nodes.
 const LETTERS_PER_NODE: usize = 15;
 
-/// States of a path as places among all, at loads that grow as the cubes of whole numbers: first contact and full load both have some.
+/// States of a path as places among all, at loads that grow as the cubes of whole numbers: first contact and full load
+/// both have some.
 fn chosen(history: &History) -> Vec<usize> {
     let states = history.states();
     let last = states.last().map_or(0.0, |state| state.contact.load);
@@ -64,8 +65,8 @@ impl Field {
     }
 }
 
-/// Pressure and gap at some states: one level a node, of the pressure in contact and of the gap out of it. The rest of the page has
-/// `taken` letters. Returns the pressure of the last state as well.
+/// Pressure and gap at some states: one level a node, of the pressure in contact and of the gap out of it. The rest of
+/// the page has `taken` letters. Returns the pressure of the last state as well.
 pub(crate) fn of(
     grid: &Grid,
     history: &History,

@@ -1,5 +1,5 @@
-//! A loading path as one HTML file that needs no network, no server and no other file: a map of contact at every state under a slider,
-//! charts with a cursor that follows it, and what the record says of surface, bodies and exactness.
+//! A loading path as one HTML file that needs no network, no server and no other file: a map of contact at every state
+//! under a slider, charts with a cursor that follows it, and what the record says of surface, bodies and exactness.
 //!
 //! ```
 //! use asperity::record::LoadingRecord;
@@ -109,7 +109,8 @@ impl Report {
         &self.notes
     }
 
-    /// Adds a path. Where its fields cannot be computed, as on a kernel that is not of the crate, the page has none and says why.
+    /// Adds a path. Where its fields cannot be computed, as on a kernel that is not of the crate, the page has none and
+    /// says why.
     ///
     /// # Errors
     ///

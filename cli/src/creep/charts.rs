@@ -12,8 +12,8 @@ use crate::passages::Passage;
 
 type Quantity = fn(&CreepState) -> f64;
 
-/// Draws area, mean gap, approach and load over the logarithm of time, the state just after t = 0 being at the left end; a history with
-/// corners of its own over time itself, unless most of it is one long hold.
+/// Draws area, mean gap, approach and load over the logarithm of time, the state just after t = 0 being at the left
+/// end; a history with corners of its own over time itself, unless most of it is one long hold.
 pub(super) fn draw(
     followed: &Followed,
     passages: &[Passage<f64>],

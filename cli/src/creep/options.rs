@@ -8,22 +8,24 @@ use clap::Args;
 use crate::path::fields::Format;
 use crate::values::{FORCE, LENGTH, TIME, number};
 
-/// Contact of viscoelastic bodies over time, from a recorded path: creep under a load, relaxation at an approach, any history
+/// Contact of viscoelastic bodies over time, from a recorded path: creep under a load, relaxation at an approach, any
+/// history
 ///
-/// The bodies relax as E(t)/E0 = 1 - sum of g (1 - exp(-t/tau)), E0 being the modulus E* of the path. While the effective load
-/// grows, everything is in closed form from the path. Where contact recedes the bed of the path is stepped in time, and the remaining error
-/// of the steps is measured and printed.
-/// Writes creep.csv (time, effective_load, load, approach, contact_area_fraction, mean_gap), creep.png (area, mean gap and load over
-/// time, with the times at which the contact percolates and its last channel closes), touch_times.png (when each node touched), and for a
-/// load that is held cycles.csv and cycles.png (loops, and the energy lost in cycles of load against their frequency).
+/// The bodies relax as E(t)/E0 = 1 - sum of g (1 - exp(-t/tau)), E0 being the modulus E* of the path. While the
+/// effective load grows, everything is in closed form from the path. Where contact recedes the bed of the path is
+/// stepped in time, and the remaining error of the steps is measured and printed. Writes creep.csv (time,
+/// effective_load, load, approach, contact_area_fraction, mean_gap), creep.png (area, mean gap and load over time, with
+/// the times at which the contact percolates and its last channel closes), touch_times.png (when each node touched),
+/// and for a load that is held cycles.csv and cycles.png (loops, and the energy lost in cycles of load against their
+/// frequency).
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File that `asperity path --record` has written
     #[arg(value_name = "FILE.npz")]
     pub(super) record: PathBuf,
 
-    /// Prony series: for each term a relaxation time in seconds and the part of E0 that relaxes with it; if the parts add up to 1, the
-    /// body flows
+    /// Prony series: for each term a relaxation time in seconds and the part of E0 that relaxes with it; if the parts
+    /// add up to 1, the body flows
     #[arg(long, value_name = "TAU,G", num_args = 1.., required = true, value_parser = term)]
     pub(super) prony: Vec<(f64, f64)>,
 
@@ -35,8 +37,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "history")]
     pub(super) approach: Option<f64>,
 
-    /// Load or approach over time: a CSV file of two columns with the header `time,load` or `time,approach`, linear between its lines; a
-    /// time given twice is a jump
+    /// Load or approach over time: a CSV file of two columns with the header `time,load` or `time,approach`, linear
+    /// between its lines; a time given twice is a jump
     #[arg(long, value_name = "FILE.csv")]
     pub(super) history: Option<PathBuf>,
 
@@ -52,7 +54,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(super) steps: u32,
 
-    /// Amplitude of the load cycles around --load whose lost energy is drawn against frequency [default: a fifth of --load]
+    /// Amplitude of the load cycles around --load whose lost energy is drawn against frequency [default: a fifth of
+    /// --load]
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), requires = "load")]
     pub(super) cycle_amplitude: Option<f64>,
 
@@ -68,9 +71,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 40, requires = "fields", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) pieces: u32,
 
-    /// Print one JSON object: the last state with time, load, effective_load, approach, contact_nodes, contact_area_fraction and
-    /// mean_gap; method, step_error, recedes, enough_until; percolates_x, percolates_y, seals_x, seals_y (seconds, or null); cycles. Files are
-    /// written only if --out is given
+    /// Print one JSON object: the last state with time, load, effective_load, approach, contact_nodes,
+    /// contact_area_fraction and mean_gap; method, step_error, recedes, enough_until; percolates_x, percolates_y,
+    /// seals_x, seals_y (seconds, or null); cycles. Files are written only if --out is given
     #[arg(long)]
     pub(super) json: bool,
 

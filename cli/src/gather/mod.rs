@@ -20,10 +20,12 @@ use table::Table;
 /// Rows of the table on the screen.
 const ROWS: usize = 12;
 
-/// Mean and standard deviation of paths, at common loads: of `asperity path --seeds`, or of several maps of one specimen
+/// Mean and standard deviation of paths, at common loads: of `asperity path --seeds`, or of several maps of one
+/// specimen
 ///
-/// Maps of one specimen are followed with the same options, each with an --out of its own in one folder. Prints a table, and writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png. Unfinished
-/// folders are ignored.
+/// Maps of one specimen are followed with the same options, each with an --out of its own in one folder. Prints a
+/// table, and writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png.
+/// Unfinished folders are ignored.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// The folder that holds one folder for each path
@@ -34,7 +36,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 60)]
     loads: usize,
 
-    /// Print one JSON object instead: paths, load, and mean and std of each column at each load (null where there is none)
+    /// Print one JSON object instead: paths, load, and mean and std of each column at each load (null where there is
+    /// none)
     #[arg(long)]
     json: bool,
 

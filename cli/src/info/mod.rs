@@ -25,7 +25,8 @@ use summary::Whole;
 /// Greatest Hurst exponent that a fit is told with: above 1, but for its error, a map is not self-affine.
 const HIGHEST_HURST: f64 = 1.2;
 
-/// Describe the file of an instrument: size, units, missing nodes, roughness, pictures, and warnings of what looks wrong
+/// Describe the file of an instrument: size, units, missing nodes, roughness, pictures, and warnings of what looks
+/// wrong
 ///
 /// All figures are those of the surface that would be pressed: missing nodes are filled, and the surface is levelled or
 /// inverted if the options say so. Warnings concern units, tilt, and wavelengths that the grid does not resolve.
@@ -38,12 +39,14 @@ pub(crate) struct Options {
     #[command(flatten)]
     reading: Reading,
 
-    /// Cut-off wavelength of the roughness of a profile, as 0.8mm: its parameters are Ra, Rz, ... then [default: Pa, Pz, ... of the primary profile]
+    /// Cut-off wavelength of the roughness of a profile, as 0.8mm: its parameters are Ra, Rz, ... then [default: Pa,
+    /// Pz, ... of the primary profile]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
     cutoff: Option<f64>,
 
-    /// Print one JSON object with format, title, understood, nx, ny, side_x, side_y, missing (in the file), min, max, mean, sa, sq, sz,
-    /// rms_gradient, profile (of one row: cutoff, evaluation_length, ra, rq, rz, rt, rsk, rku, rsm), notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
+    /// Print one JSON object with format, title, understood, nx, ny, side_x, side_y, missing (in the file), min, max,
+    /// mean, sa, sq, sz, rms_gradient, profile (of one row: cutoff, evaluation_length, ra, rq, rz, rt, rsk, rku, rsm),
+    /// notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
     #[arg(long)]
     json: bool,
 

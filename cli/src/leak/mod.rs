@@ -1,7 +1,7 @@
 //! `asperity leak`: how much of a fluid leaks through the gap along a recorded path.
 //!
-//! Prints the leak rate at states of the path, or one document of JSON, and writes `leak.csv`, `leak.png`, and for each load a map
-//! of the fluid pressure and one of the flux.
+//! Prints the leak rate at states of the path, or one document of JSON, and writes `leak.csv`, `leak.png`, and for each
+//! load a map of the fluid pressure and one of the flux.
 
 mod charts;
 mod maps;
@@ -24,12 +24,13 @@ use crate::values::{FORCE, LENGTH, PRESSURE, VISCOSITY};
 
 /// Leak rate through the gap along a recorded path: Reynolds' equation on the gap, contact closed
 ///
-/// A fluid is pressed from one edge of the surface to the opposite one. The other two edges are closed, unless the half-space is periodic.
-/// Prints the leak rate at states of the path that are chosen where it changes, up to the one at which the last channel closes, and writes
-/// leak.csv and leak.png; for each --load, or else for half of that load, it writes maps of the fluid pressure and of the flux.
+/// A fluid is pressed from one edge of the surface to the opposite one. The other two edges are closed, unless the
+/// half-space is periodic. Prints the leak rate at states of the path that are chosen where it changes, up to the one
+/// at which the last channel closes, and writes leak.csv and leak.png; for each --load, or else for half of that load,
+/// it writes maps of the fluid pressure and of the flux.
 ///
-/// The pressure of the fluid does not open the gap. The leak rate is that of the grid: shortly before the last channel closes, a constriction
-/// of few cells decides.
+/// The pressure of the fluid does not open the gap. The leak rate is that of the grid: shortly before the last channel
+/// closes, a constriction of few cells decides.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File that `asperity path --record` has written
@@ -44,7 +45,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     pressure_drop: f64,
 
-    /// The fluid is an ideal gas, which leaves at this absolute pressure: leak rates are volumes there, and its throughput is told too
+    /// The fluid is an ideal gas, which leaves at this absolute pressure: leak rates are volumes there, and its
+    /// throughput is told too
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     gas_outlet_pressure: Option<f64>,
 
@@ -65,7 +67,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 40)]
     states: usize,
 
-    /// Print one document of JSON and nothing else: the last of the loads, or of the states, and all of them in `states`
+    /// Print one document of JSON and nothing else: the last of the loads, or of the states, and all of them in
+    /// `states`
     #[arg(long)]
     json: bool,
 

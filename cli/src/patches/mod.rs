@@ -30,8 +30,9 @@ use moment::Moment;
 
 /// Contact patches along a recorded path: when the contact percolates and seals, and which patches carry the load
 ///
-/// Prints when one patch extends from end to end of the surface along x or y, when the last channel through the gap from end to end closes
-/// (from there on `asperity leak` finds no leak), when the same happens around a periodic grid, and for one state the largest patch and the narrowest place of the widest channel, which any leak has to pass.
+/// Prints when one patch extends from end to end of the surface along x or y, when the last channel through the gap
+/// from end to end closes (from there on `asperity leak` finds no leak), when the same happens around a periodic grid,
+/// and for one state the largest patch and the narrowest place of the widest channel, which any leak has to pass.
 /// Writes patches.csv, patches.png, activation.png (the load at which each node touched: every contact map in one),
 /// merge_tree.png and distributions.png.
 #[derive(Debug, Args)]
@@ -52,8 +53,10 @@ pub(crate) struct Options {
     #[arg(long)]
     corners: bool,
 
-    /// Print one JSON object instead: percolates_x, percolates_y, seals_x and seals_y (the state from which on that holds, or null), on a
-    /// periodic half-space also patch_winds_x, patch_winds_y, no_channel_winds_x and no_channel_winds_y, state, patches, largest_patch, channel_x and channel_y (the narrowest place of the widest channel, or null); SI units
+    /// Print one JSON object instead: percolates_x, percolates_y, seals_x and seals_y (the state from which on that
+    /// holds, or null), on a periodic half-space also patch_winds_x, patch_winds_y, no_channel_winds_x and
+    /// no_channel_winds_y, state, patches, largest_patch, channel_x and channel_y (the narrowest place of the widest
+    /// channel, or null); SI units
     #[arg(long)]
     json: bool,
 

@@ -13,9 +13,9 @@ pub(super) struct Leaf {
 
 /// The largest branches, row by row from above.
 ///
-/// A branch that goes on at a merger is larger than the other one, so that it is here if the other is.
-/// Below each branch are those that merge into it, earlier mergers nearer to it: what lies between a branch and the one it
-/// merges into has ended by then, so that no lines cross.
+/// A branch that goes on at a merger is larger than the other one, so that it is here if the other is. Below each
+/// branch are those that merge into it, earlier mergers nearer to it: what lies between a branch and the one it merges
+/// into has ended by then, so that no lines cross.
 pub(super) fn rows(branches: &[Branch], most: usize) -> Vec<Leaf> {
     let mut largest: Vec<usize> = (0..branches.len()).collect();
     largest.sort_by_key(|&place| std::cmp::Reverse(branches[place].nodes));

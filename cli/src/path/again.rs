@@ -8,7 +8,8 @@ use clap::{Arg, ArgMatches, CommandFactory};
 use super::Options;
 use crate::shell::quoted;
 
-/// The words of a command that continues the path of a record with all options that were given, but for those that the record knows.
+/// The words of a command that continues the path of a record with all options that were given, but for those that the
+/// record knows.
 pub(super) fn command(record: &Path, given: &ArgMatches) -> String {
     let mut command = Options::command();
     command.build();

@@ -23,19 +23,20 @@ const NODE: [f64; 2] = [350.0, 750.0];
 const CONTACT_NODE: f64 = 1000.0;
 /// Of a factor of n nodes, per n² \[bytes\].
 const FACTOR: f64 = 4.0;
-/// Seconds of an event besides its linear algebra, and per node of the grid, its share of convolutions: elastic, and with a hardness, which
-/// makes windows shorter.
+/// Seconds of an event besides its linear algebra, and per node of the grid, its share of convolutions: elastic, and
+/// with a hardness, which makes windows shorter.
 const EVENT: f64 = 1e-5;
 const EVENT_NODE: [f64; 2] = [3e-10, 1e-9];
-/// Elastic events without a factor, over what the hand-over takes them to cost: on one thread 0.5 to 3.8 was measured, on 32² to 128² nodes
-/// from 5 to 100 % of contact.
+/// Elastic events without a factor, over what the hand-over takes them to cost: on one thread 0.5 to 3.8 was measured,
+/// on 32² to 128² nodes from 5 to 100 % of contact.
 const ITERATED: f64 = 1.6;
-/// With a hardness linear algebra takes longer the more nodes yield with a factor, and the fewer of them without one: a number, and what
-/// comes to it per share of the nodes that have yielded and per share of those that have not.
+/// With a hardness linear algebra takes longer the more nodes yield with a factor, and the fewer of them without one: a
+/// number, and what comes to it per share of the nodes that have yielded and per share of those that have not.
 const YIELDING_FACTOR: [f64; 2] = [1.0, 8.0];
 const YIELDING_ITERATIONS: [f64; 2] = [0.5, 2.0];
-/// Seconds of an event where nodes may leave, per node of the grid and per n² of a factor of n nodes; without one a number and per node of
-/// the grid. 32² to 256² nodes, stiff coats with 0 to 15 % of releases: 0.3 to 2.8 of it were measured, more where more nodes leave.
+/// Seconds of an event where nodes may leave, per node of the grid and per n² of a factor of n nodes; without one a
+/// number and per node of the grid. 32² to 256² nodes, stiff coats with 0 to 15 % of releases: 0.3 to 2.8 of it were
+/// measured, more where more nodes leave.
 const STEP_FACTOR: [f64; 2] = [4e-8, 9e-10];
 const STEP_ITERATIONS: [f64; 2] = [1.7e-3, 5e-8];
 /// Seconds for tables and pictures, and per node of the grid with a factor and without one.
@@ -45,7 +46,8 @@ const OUTPUT_NODE: [f64; 2] = [5e-7, 4e-6];
 const TOLERANCE: f64 = 1e-4;
 
 impl Updater {
-    /// Seconds that the linear algebra of an event takes with so many elastic nodes in contact on a grid of `nodes`, on two cores.
+    /// Seconds that the linear algebra of an event takes with so many elastic nodes in contact on a grid of `nodes`, on
+    /// two cores.
     pub(super) fn event_seconds(self, nodes: usize, elastic: usize) -> f64 {
         match self.has_factor(nodes, elastic, nodes) {
             true => factor_seconds(elastic),
@@ -261,8 +263,8 @@ impl End {
     }
 }
 
-/// The contact of a randomly rough surface by Persson's theory. Pressures are distributed about as `p exp(−2 p² / (E* h′)²)`, cut off at
-/// the hardness.
+/// The contact of a randomly rough surface by Persson's theory. Pressures are distributed about as `p exp(−2 p² / (E*
+/// h′)²)`, cut off at the hardness.
 struct Theory {
     law: Option<AreaLoadLaw>,
     nominal_area: f64,

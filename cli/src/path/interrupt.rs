@@ -10,8 +10,8 @@ use signal_hook::flag;
 /// What a shell says of a program that Ctrl-C has ended.
 pub(super) const EXIT_CODE: u8 = 128 + SIGINT as u8;
 
-/// Whether a signal ends the program at once. While a path is followed it does not: the first one asks the path to stop,
-/// and the second ends the program.
+/// Whether a signal ends the program at once. While a path is followed it does not: the first one asks the path to
+/// stop, and the second ends the program.
 #[derive(Clone)]
 pub(super) struct Interrupt(Arc<AtomicBool>);
 

@@ -30,12 +30,14 @@ pub(super) struct Joint {
     #[command(flatten)]
     conduct: Conduct,
 
-    /// Write conductance.csv, with bounds for a surface that has more roughness than the grid, of at most this height from valley to peak
+    /// Write conductance.csv, with bounds for a surface that has more roughness than the grid, of at most this height
+    /// from valley to peak
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
     unresolved_roughness: Option<f64>,
 
-    /// Write the laws of the interface for finite elements, per nominal area: pressure over overclosure (what the mean gap closes); over the
-    /// pressure the conductance, if there is one, and with --friction tangential stiffness and slip limit
+    /// Write the laws of the interface for finite elements, per nominal area: pressure over overclosure (what the mean
+    /// gap closes); over the pressure the conductance, if there is one, and with --friction tangential stiffness and
+    /// slip limit
     #[arg(long, value_enum, value_name = "PROGRAM")]
     fe_table: Option<Program>,
 
@@ -47,7 +49,8 @@ pub(super) struct Joint {
     #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = positive, requires = "fe_table")]
     friction: Option<f64>,
 
-    /// Tangential over normal compliance, E*/G* [default: of --material and --against; (2 - ν)/(2 - 2ν) for one of them]
+    /// Tangential over normal compliance, E*/G* [default: of --material and --against; (2 - ν)/(2 - 2ν) for one of
+    /// them]
     #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, value_parser = positive, requires = "friction")]
     compliance_ratio: Option<f64>,
 }

@@ -1,9 +1,9 @@
 //! `asperity path`: from a rough surface to its whole loading path.
 //!
-//! Writes `settings.json`, `path.csv` with one line for each state, `loading_curve.svg` and
-//! `contact_map.png`, the record of the path and its page if they are asked for, and prints a short table. If the path ends with
-//! an error, everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and
-//! `path.csv` are written, and the exit code is 130.
+//! Writes `settings.json`, `path.csv` with one line for each state, `loading_curve.svg` and `contact_map.png`, the
+//! record of the path and its page if they are asked for, and prints a short table. If the path ends with an error,
+//! everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and `path.csv` are
+//! written, and the exit code is 130.
 
 mod again;
 mod curves;
@@ -156,7 +156,8 @@ fn follow_one(
     panel::register_font()?;
     let settings = job.settings().write(&options.out)?;
     let edge = ContactEdge::new(job.grid(), job.boundary());
-    // The stiffness on unloading, by which a contact conducts that yields, is computed at the end for all states at once.
+    // The stiffness on unloading, by which a contact conducts that yields, is computed at the end for all states at
+    // once.
     let conducts_at_end = job.has_hardness() && options.joint.needs_stiffness(&conductions);
     let columns = if conducts_at_end { Vec::new() } else { conductions.clone() };
     let file = PathFile::create(&options.out, edge, (columns, job.layering()))?;

@@ -25,20 +25,24 @@ fn generated(arg: Arg, value: &str) -> Arg {
     arg.help(format!("{help} [generated surface: {value}]"))
 }
 
-/// The loading path of a rough surface: area, load, approach, gap and stiffness at each node that touches, in exact order
+/// The loading path of a rough surface: area, load, approach, gap and stiffness at each node that touches, in exact
+/// order
 ///
-/// Prints a table of states at loads spread over the path, or of those of --at, and the residuals of the last state. Writes path.csv (one
-/// line for each state), loading_curve.svg and contact_map.png. Numbers are in SI units, or have a unit: 5MPa, 1.024mm, 250N, 10%, 60HRC.
+/// Prints a table of states at loads spread over the path, or of those of --at, and the residuals of the last state.
+/// Writes path.csv (one line for each state), loading_curve.svg and contact_map.png. Numbers are in SI units, or have a
+/// unit: 5MPa, 1.024mm, 250N, 10%, 60HRC.
 ///
-/// The model is a rigid rough surface with small slopes on an elastic half-space, without friction and adhesion. If both bodies
-/// are elastic, E* contains both. With --layer and --base one body has layers. With --hardness cells yield at that pressure: it does not harden, and volume is lost. The problem with one pressure for each cell of the grid is solved to rounding; on long paths
-/// approach_error estimates the remaining error. No solver can restore what the grid does not resolve: corrected_contact_area
-/// removes the excess of whole cells from the area, and the program warns if contact patches or wavelengths are only a few cells
-/// wide.
+/// The model is a rigid rough surface with small slopes on an elastic half-space, without friction and adhesion. If
+/// both bodies are elastic, E* contains both. With --layer and --base one body has layers. With --hardness cells yield
+/// at that pressure: it does not harden, and volume is lost. The problem with one pressure for each cell of the grid is
+/// solved to rounding; on long paths approach_error estimates the remaining error. No solver can restore what the grid
+/// does not resolve: corrected_contact_area removes the excess of whole cells from the area, and the program warns if
+/// contact patches or wavelengths are only a few cells wide.
 ///
-/// Without --surface the program generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm, Hurst
-/// exponent 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a shortest wavelength
-/// that the grid resolves. Their mesh and their shortest wavelength are --nodes 512 --short-cutoff 78.125um.
+/// Without --surface the program generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm,
+/// Hurst exponent 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a
+/// shortest wavelength that the grid resolves. Their mesh and their shortest wavelength are --nodes 512 --short-cutoff
+/// 78.125um.
 #[derive(Debug, Clone, Parser)]
 #[command(group(ArgGroup::new("kept").multiple(true)))]
 #[command(mut_arg("side", |arg| generated(arg, "1e-2")), mut_arg("material", |arg| generated(arg, "steel")))]
@@ -48,8 +52,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nodes", "seed"])]
     pub(super) surface: Option<PathBuf>,
 
-    /// File with the heights of the other body, if both are rough: on the same grid, seen from outside like the first. It is turned over
-    /// about y, so that both face each other; --fill, --level and what else is said of a file is done to both
+    /// File with the heights of the other body, if both are rough: on the same grid, seen from outside like the first.
+    /// It is turned over about y, so that both face each other; --fill, --level and what else is said of a file is done
+    /// to both
     #[arg(long, value_name = "FILE", requires = "surface", help_heading = "Bodies")]
     pub(super) against_surface: Option<PathBuf>,
 
@@ -67,13 +72,14 @@ pub(crate) struct Options {
     pub(super) hardness: Hardness,
 
     /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
-    /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the two stiffnesses
-    /// there is only the interfacial one
+    /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the
+    /// two stiffnesses there is only the interfacial one
     #[arg(long, value_enum)]
     pub(super) periodic: Option<Periodic>,
 
-    /// States of which table, maps (contact_map_5MPa.png) and --fields are: a load over nominal area, a load, or a contact area, as in
-    /// 5MPa,50MPa or 10N or 2mm2 or 10%. A bare number is a mean pressure in Pa. Without another end the path ends at the last of them
+    /// States of which table, maps (contact_map_5MPa.png) and --fields are: a load over nominal area, a load, or a
+    /// contact area, as in 5MPa,50MPa or 10N or 2mm2 or 10%. A bare number is a mean pressure in Pa. Without another
+    /// end the path ends at the last of them
     #[arg(long, value_name = "STATE,...", value_delimiter = ',', allow_negative_numbers = true)]
     pub(super) at: Vec<At>,
 
@@ -113,8 +119,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "STATES", requires = "kept", help_heading = "Records and files")]
     pub(super) save_every: Option<NonZeroUsize>,
 
-    /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
-    /// names another file. A target before the end of the record is read from it
+    /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless
+    /// --record names another file. A target before the end of the record is read from it
     #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "against_surface", "against_turned", "nodes", "seed", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "rows_are_y", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"], help_heading = "Records and files")]
     pub(super) resume: Option<PathBuf>,
 
@@ -135,8 +141,9 @@ pub(crate) struct Options {
     #[arg(long, help_heading = "Solver")]
     pub(super) dry_run: bool,
 
-    /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state, max_pressure, warnings, and
-    /// in `at` the scalars of each state of --at (SI units; null where there is no number); one line for each seed
+    /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state,
+    /// max_pressure, warnings, and in `at` the scalars of each state of --at (SI units; null where there is no number);
+    /// one line for each seed
     #[arg(long, help_heading = "Records and files")]
     pub(super) json: bool,
 }

@@ -22,7 +22,8 @@ fn hardness(map: Option<&DMatrix<f64>>) -> Value {
     }
 }
 
-/// Layers from the surface downwards, each its Young's modulus, Poisson's ratio and thickness; nothing if there are none.
+/// Layers from the surface downwards, each its Young's modulus, Poisson's ratio and thickness; nothing if there are
+/// none.
 fn layers(body: Option<&LayeredBody>) -> Value {
     let Some(body) = body else { return Value::Null };
     let layers = body.layers().iter().map(|layer| [layer.young, layer.poisson, layer.thickness]);

@@ -28,7 +28,8 @@ impl Updater {
     }
 }
 
-/// What there is no room for, with the largest grid for which there is; with a factor alone that depends on where the path ends.
+/// What there is no room for, with the largest grid for which there is; with a factor alone that depends on where the
+/// path ends.
 pub(super) fn no_room(
     what: String,
     error: Error,

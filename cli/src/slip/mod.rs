@@ -1,7 +1,7 @@
 //! `asperity slip`: what a tangential load does to the contact of a record.
 //!
-//! Prints the state under the load and the cycle, and writes `slip.csv`, `cycles.csv`, `iwan.csv`, `slip.png`, `stick_map.png` and
-//! `wear_map.png`; with `--history` also `history.csv` and `history.png`.
+//! Prints the state under the load and the cycle, and writes `slip.csv`, `cycles.csv`, `iwan.csv`, `slip.png`,
+//! `stick_map.png` and `wear_map.png`; with `--history` also `history.csv` and `history.png`.
 
 mod charts;
 mod history;
@@ -25,15 +25,15 @@ use joint::Joint;
 
 /// Partial slip of a recorded contact under a tangential load: stiffness, dissipation, and which nodes slip
 ///
-/// The joint is pressed with a load and sheared with a tangential load between -T and T. Nodes slip where the traction reaches the
-/// friction limit, long before the joint slides as a whole. All of it follows from the path, without another solution; only the
-/// maps take three fields of it.
+/// The joint is pressed with a load and sheared with a tangential load between -T and T. Nodes slip where the traction
+/// reaches the friction limit, long before the joint slides as a whole. All of it follows from the path, without
+/// another solution; only the maps take three fields of it.
 ///
-/// Writes slip.csv (the first loading), cycles.csv (dissipation, stiffness and loss factor against amplitude), iwan.csv (the joint
-/// as elements of a spring and a slider), slip.png, stick_map.png and wear_map.png.
+/// Writes slip.csv (the first loading), cycles.csv (dissipation, stiffness and loss factor against amplitude), iwan.csv
+/// (the joint as elements of a spring and a slider), slip.png, stick_map.png and wear_map.png.
 ///
-/// For bodies of one material, or of Poisson's ratio 1/2 against a rigid one, stiffnesses are right within some per cent; see
-/// docs/joints_that_slip.md. The dissipation is that of a cycle, and not of the first loading.
+/// For bodies of one material, or of Poisson's ratio 1/2 against a rigid one, stiffnesses are right within some per
+/// cent; see docs/joints_that_slip.md. The dissipation is that of a cycle, and not of the first loading.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("compliance").args(["compliance_ratio", "material"])))]
 pub(crate) struct Options {
@@ -57,8 +57,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, value_parser = positive)]
     compliance_ratio: Option<f64>,
 
-    /// One body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3) [default: both bodies of the
-    /// record, if it knows them]
+    /// One body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3) [default: both
+    /// bodies of the record, if it knows them]
     #[arg(long, value_name = "NAME|E,NU")]
     material: Option<Material>,
 
@@ -66,15 +66,15 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME|E,NU", requires = "material")]
     against: Option<Material>,
 
-    /// Table of loads and tangential loads, with the columns load,tangential_load: the joint follows straight lines between them,
-    /// from no load on. Writes history.csv and history.png
+    /// Table of loads and tangential loads, with the columns load,tangential_load: the joint follows straight lines
+    /// between them, from no load on. Writes history.csv and history.png
     #[arg(long, value_name = "FILE.csv")]
     history: Option<PathBuf>,
 
     /// Print one JSON object with load, tangential_load, displacement, interfacial_displacement, stick_area, slip_area,
-    /// stick_nodes, slipping_nodes, tangential_stiffness, dissipation, secant_stiffness, loss_factor, sliding_load, sliding_displacement,
-    /// friction, compliance_ratio, dundurs_beta, history_dissipation and warnings (SI units; null where unknown), and write files
-    /// only if --out is given
+    /// stick_nodes, slipping_nodes, tangential_stiffness, dissipation, secant_stiffness, loss_factor, sliding_load,
+    /// sliding_displacement, friction, compliance_ratio, dundurs_beta, history_dissipation and warnings (SI units; null
+    /// where unknown), and write files only if --out is given
     #[arg(long)]
     json: bool,
 

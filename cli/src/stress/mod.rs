@@ -1,7 +1,8 @@
-//! `asperity stress`: the stress below the surface at a state of a record, and the load at which a body begins to yield.
+//! `asperity stress`: the stress below the surface at a state of a record, and the load at which a body begins to
+//! yield.
 //!
-//! Prints where each measure of stress is greatest, and writes `stress.csv`, `stress.png`, `von_mises_map.png`, `shear_map.png`,
-//! `section_x.png` and `section_y.png`; with `--volume` also `stress.vti`.
+//! Prints where each measure of stress is greatest, and writes `stress.csv`, `stress.png`, `von_mises_map.png`,
+//! `shear_map.png`, `section_x.png` and `section_y.png`; with `--volume` also `stress.vti`.
 
 mod body;
 mod charts;
@@ -24,13 +25,15 @@ use body::Moment;
 
 /// Stress below the surface of a recorded contact: where it is greatest, maps and sections, and the load of first yield
 ///
-/// The body is a homogeneous elastic half-space or has layers, under the pressures of a state of the path, and, with --friction on a
-/// homogeneous one, under tractions in proportion to them. Prints von Mises' and Tresca's equivalent stress, the greatest shear stress and the greatest tension with their
-/// places; with --yield-stress also the load of the path at which the body begins to yield.
+/// The body is a homogeneous elastic half-space or has layers, under the pressures of a state of the path, and, with
+/// --friction on a homogeneous one, under tractions in proportion to them. Prints von Mises' and Tresca's equivalent
+/// stress, the greatest shear stress and the greatest tension with their places; with --yield-stress also the load of
+/// the path at which the body begins to yield.
 ///
-/// Writes stress.csv (the greatest value of each measure at each depth, for each body), stress.png, maps of von Mises' stress and of the
-/// greatest shear stress at the depths where they are greatest (von_mises_map.png, shear_map.png), and vertical sections of von Mises'
-/// stress through its greatest value (section_x.png, section_y.png); all but the first two of the body, or of the first of two.
+/// Writes stress.csv (the greatest value of each measure at each depth, for each body), stress.png, maps of von Mises'
+/// stress and of the greatest shear stress at the depths where they are greatest (von_mises_map.png, shear_map.png),
+/// and vertical sections of von Mises' stress through its greatest value (section_x.png, section_y.png); all but the
+/// first two of the body, or of the first of two.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("ratio").args(["poisson", "material"])))]
 pub(crate) struct Options {
@@ -54,7 +57,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME|E,NU", requires = "material")]
     against: Option<Material>,
 
-    /// Yield stress of the body, of layers one for all: the load at which von Mises' stress reaches it is looked for along the path
+    /// Yield stress of the body, of layers one for all: the load at which von Mises' stress reaches it is looked for
+    /// along the path
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     yield_stress: Option<f64>,
 
@@ -70,18 +74,20 @@ pub(crate) struct Options {
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = ANGLE.any(), default_value_t = 0.0)]
     angle: f64,
 
-    /// Depth at which stresses are computed; may be given several times [default: from the surface to the size of the largest patch, and
-    /// around the greatest stress]
+    /// Depth at which stresses are computed; may be given several times [default: from the surface to the size of the
+    /// largest patch, and around the greatest stress]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.not_negative())]
     depth: Vec<f64>,
 
-    /// Write stress.vti, which ParaView opens: the stress tensor and its measures at so many depths, as deep as the sections
+    /// Write stress.vti, which ParaView opens: the stress tensor and its measures at so many depths, as deep as the
+    /// sections
     #[arg(long, value_name = "DEPTHS")]
     volume: Option<usize>,
 
-    /// Print one JSON object with load, mean_pressure, friction, angle, bodies and warnings, and write files only if --out is given. Each
-    /// body has poissons_ratio, von_mises, tresca, greatest_shear and greatest_tension (value, depth, node), depths, yield_stress and
-    /// first_yield (load, contact_nodes, von_mises; null if the path ends before); SI units
+    /// Print one JSON object with load, mean_pressure, friction, angle, bodies and warnings, and write files only if
+    /// --out is given. Each body has poissons_ratio, von_mises, tresca, greatest_shear and greatest_tension (value,
+    /// depth, node), depths, yield_stress and first_yield (load, contact_nodes, von_mises; null if the path ends
+    /// before); SI units
     #[arg(long)]
     json: bool,
 

@@ -9,7 +9,8 @@ use proptest::prelude::*;
 use crate::case::{Body, Case, case, failed};
 use crate::same::{EXACT, SAME, Scale, bits, same_path};
 
-/// What states without a factor may be off: 10⁻⁵ at worst on large grids, and a window is a large part of so short a path.
+/// What states without a factor may be off: 10⁻⁵ at worst on large grids, and a window is a large part of so short a
+/// path.
 const ITERATED: f64 = 3e-4;
 
 proptest! {
@@ -81,7 +82,8 @@ proptest! {
         same_path(&found, &expected, place, SAME, EXACT)?;
     }
 
-    /// Any window and any updater with a factor: one path. Without a factor the same events, and nearly the same states.
+    /// Any window and any updater with a factor: one path. Without a factor the same events, and nearly the same
+    /// states.
     #[test]
     fn windows_and_updaters_do_not_matter(
         case in case(),

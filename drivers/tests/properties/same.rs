@@ -4,11 +4,11 @@ use asperity::LoadingState;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 
-/// What two paths may differ by that are exact to rounding, relative to the numbers themselves: they solve with matrices of
-/// condition 10³ at most and are 10⁻¹¹ apart at worst, mean gaps as much of the initial one.
+/// What two paths may differ by that are exact to rounding, relative to the numbers themselves: they solve with
+/// matrices of condition 10³ at most and are 10⁻¹¹ apart at worst, mean gaps as much of the initial one.
 pub(crate) const EXACT: f64 = 1e-11;
-/// Events this close, relative to the approach, are one: rounding decides which comes first. Of a path without a factor as
-/// well, as `asperity::loading` says.
+/// Events this close, relative to the approach, are one: rounding decides which comes first. Of a path without a factor
+/// as well, as `asperity::loading` says.
 const TIE: f64 = 1e-9;
 /// How far quantities of a path scale.
 #[derive(Debug, Clone, Copy)]
@@ -32,8 +32,8 @@ pub(crate) fn close(what: &str, a: f64, b: f64, allowed: f64) -> TestCaseResult 
     Ok(())
 }
 
-/// Compares a path with another one whose nodes are at `place`: the same nodes in the same order up to ties, and the same
-/// scalars between groups of ties.
+/// Compares a path with another one whose nodes are at `place`: the same nodes in the same order up to ties, and the
+/// same scalars between groups of ties.
 pub(crate) fn same_path(
     found: &[LoadingState],
     expected: &[LoadingState],

@@ -26,7 +26,8 @@ fn bytes_are_those_held() -> Result<(), Error> {
     Ok(())
 }
 
-/// By Parseval's theorem: the sum of squares of the coefficients over the number of waves, whatever the parity of lengths.
+/// By Parseval's theorem: the sum of squares of the coefficients over the number of waves, whatever the parity of
+/// lengths.
 #[test]
 fn the_norm_of_the_symbol_is_that_of_the_coefficients() -> Result<(), Error> {
     for (nx, ny) in [(13, 7), (6, 4), (1, 5), (5, 1), (2, 2), (1, 1)] {

@@ -124,11 +124,12 @@ fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
     Ok(())
 }
 
-/// Half of the way, a quarter and so on where the energy is no less there, and no less than to the first pressure that vanishes; nodes that
-/// lose their pressure on the way are all set free, and the sum stays.
+/// Half of the way, a quarter and so on where the energy is no less there, and no less than to the first pressure that
+/// vanishes; nodes that lose their pressure on the way are all set free, and the sum stays.
 #[test]
 fn the_way_down_ends_where_the_energy_is_less() -> Result<(), Error> {
-    // The energy is least at 1 and is what it was at 2, a little less far for what is cut off; the first pressure vanishes at 1.04.
+    // The energy is least at 1 and is what it was at 2, a little less far for what is cut off; the first pressure
+    // vanishes at 1.04.
     for (overshoot, halvings) in [(1.5, Some(0)), (3.0, Some(1)), (6.0, Some(2)), (1e6, None)] {
         let (mut level, prescribed) = spread_out()?;
         let begin = level.iterate.pressure.clone();

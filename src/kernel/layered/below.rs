@@ -14,8 +14,8 @@ type Stresses = [f64; 6];
 /// A wave has faded at this many times its reciprocal wave number.
 const FADED: f64 = 34.0;
 
-/// Stresses at one depth of a layered body, under waves of pressure and under cells, less those of a half-space of the uppermost layer at
-/// depths within that: without the difference responses near the surface have no end.
+/// Stresses at one depth of a layered body, under waves of pressure and under cells, less those of a half-space of the
+/// uppermost layer at depths within that: without the difference responses near the surface have no end.
 #[derive(Debug)]
 pub(crate) struct Below<'a> {
     body: &'a LayeredBody,
@@ -120,7 +120,8 @@ impl<'a> Below<'a> {
         }
     }
 
-    /// From the base up to the depth, where displacements follow from tractions, and on to the surface, whose tractions are known.
+    /// From the base up to the depth, where displacements follow from tractions, and on to the surface, whose tractions
+    /// are known.
     fn whole(&self, q: f64) -> InPlane {
         const ALL: Block = [[1.0, 0.0], [0.0, 1.0]];
         let mut below = match self.body.base() {

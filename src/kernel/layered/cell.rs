@@ -14,9 +14,10 @@ pub(super) struct Smoothness {
 impl Smoothness {
     /// The rule for the cell of `sides` about `center`; `None` if the cell has to be divided.
     ///
-    /// Along a line through the cell that passes the origin at a distance b, the nearest singularities lie at √(b² + depth²) to either
-    /// side of the line. With d, the least of these distances in the cell, and half the long side a of the cell, an n-point rule converges
-    /// as ϱ⁻²ⁿ with ϱ = d/a + √(d²/a² + 1). The rules are those with ϱ⁻²ⁿ ≤ 10⁻¹⁶; where there is none, the cell is divided.
+    /// Along a line through the cell that passes the origin at a distance b, the nearest singularities lie at √(b² +
+    /// depth²) to either side of the line. With d, the least of these distances in the cell, and half the long side a
+    /// of the cell, an n-point rule converges as ϱ⁻²ⁿ with ϱ = d/a + √(d²/a² + 1). The rules are those with ϱ⁻²ⁿ ≤
+    /// 10⁻¹⁶; where there is none, the cell is divided.
     pub(super) fn rule(
         self,
         (x, y): (f64, f64),

@@ -1,7 +1,8 @@
 //! How the surface of layers answers a wave: a recursion from the base to the surface.
 //!
-//! A wave along x in plane strain, with depth z and x̄ = q z, has the displacements W cos qx into the body and U sin qx along it, and
-//! on planes of constant z the pressure 2 G q n cos qx and the shear traction −2 G q τ sin qx. In a material of Poisson's ratio ν
+//! A wave along x in plane strain, with depth z and x̄ = q z, has the displacements W cos qx into the body and U sin qx
+//! along it, and on planes of constant z the pressure 2 G q n cos qx and the shear traction −2 G q τ sin qx. In a
+//! material of Poisson's ratio ν
 //!
 //! ```math
 //! \frac{\mathrm d}{\mathrm d \bar x} \begin{pmatrix} W \\ U \\ n \\ \tau \end{pmatrix} =
@@ -9,8 +10,8 @@
 //! A = \begin{pmatrix} 0 & -b & -c & 0 \\ 1 & 0 & 0 & -2 \\ 0 & 0 & 0 & -1 \\ 0 & -d & b & 0 \end{pmatrix},
 //! ```
 //!
-//! b = ν / (1 − ν), c = (1 − 2ν) / (1 − ν), d = 1 / (1 − ν): Hooke's law and equilibrium, without a division by 1 − 2ν. The
-//! eigenvalues are ±1, each twice, and (A² − 1)² = 0, so that with B = A² − 1
+//! b = ν / (1 − ν), c = (1 − 2ν) / (1 − ν), d = 1 / (1 − ν): Hooke's law and equilibrium, without a division by 1 − 2ν.
+//! The eigenvalues are ±1, each twice, and (A² − 1)² = 0, so that with B = A² − 1
 //!
 //! ```math
 //! e^{-A x} = \cosh x + \tfrac12 x \sinh x\, B - A \bigl(\sinh x + \tfrac12 (x \cosh x - \sinh x)\, B\bigr) ,
@@ -21,8 +22,8 @@
 //! AB = d \begin{pmatrix} 0 & -1 & 1 & 0 \\ 1 & 0 & 0 & -1 \\ 1 & 0 & 0 & -1 \\ 0 & -1 & 1 & 0 \end{pmatrix} .
 //! ```
 //!
-//! With (W, U) = S (n, τ) below, blocks of this matrix give the same above. S is symmetric and positive, and errors in it fade on the
-//! way up.
+//! With (W, U) = S (n, τ) below, blocks of this matrix give the same above. S is symmetric and positive, and errors in
+//! it fade on the way up.
 
 /// A material: shear modulus and Poisson's ratio.
 #[derive(Debug, Clone, Copy)]

@@ -1,4 +1,5 @@
-//! Integrals over the cells of a grid of a function of the distance, far from where it varies: from its values at the centres.
+//! Integrals over the cells of a grid of a function of the distance, far from where it varies: from its values at the
+//! centres.
 //!
 //! With the central difference δ of a function between neighbouring cells, its mean over a cell is
 //!
@@ -7,8 +8,8 @@
 //!     + \frac{367\, \delta^6}{967680} - \frac{27859\, \delta^8}{464486400} + \dots \Bigr) f ,
 //! ```
 //!
-//! along x and along y. The next term is 1.06 × 10⁻⁵ δ¹⁰. With the nearest singularity d cells away, the tenth derivative of
-//! 1/√(r² + s²) is at most 10!/d¹⁰ of it.
+//! along x and along y. The next term is 1.06 × 10⁻⁵ δ¹⁰. With the nearest singularity d cells away, the tenth
+//! derivative of 1/√(r² + s²) is at most 10!/d¹⁰ of it.
 
 use super::cell::Smoothness;
 use crate::Grid;
@@ -120,7 +121,8 @@ mod tests {
     use super::*;
     use crate::Error;
 
-    /// Beside Gauss's rules, where both serve, and on long cells: from the first row, whose neighbours mirror it, to the last corner.
+    /// Beside Gauss's rules, where both serve, and on long cells: from the first row, whose neighbours mirror it, to
+    /// the last corner.
     #[test]
     fn far_cells_are_those_of_gauss() -> Result<(), Error> {
         for (sides, depth) in
@@ -140,7 +142,8 @@ mod tests {
                     let center = (ix as f64 * sides.0, iy as f64 * sides.1);
                     let expected = integral(&|r| r.map(f), smoothness, center, sides);
                     let error = row.integral(ix) / expected - 1.0;
-                    // Ten roundings, and 10⁻¹⁶ of the first part; of the second, which is at most 1/72 of the first, 66 times that.
+                    // Ten roundings, and 10⁻¹⁶ of the first part; of the second, which is at most 1/72 of the first, 66
+                    // times that.
                     assert!(error.abs() < 3e-15, "{sides:?} {depth} ({ix}, {iy}): {error:e}");
                     served += 1;
                 }

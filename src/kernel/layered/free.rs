@@ -10,15 +10,17 @@ use crate::kernel::{Boussinesq, InfluenceKernel};
 use crate::parallel::for_each_chunk;
 use crate::{Error, Grid};
 
-/// Deep layers are felt up to this wave number, in units of 1 / thickness of the uppermost one: 10⁻²⁰ of the whole is left.
+/// Deep layers are felt up to this wave number, in units of 1 / thickness of the uppermost one: 10⁻²⁰ of the whole is
+/// left.
 pub(super) const DEEPEST: f64 = 26.0;
-/// What is left of the response of a half-space where a layer on a rigid base has none: more than the errors of the table.
+/// What is left of the response of a half-space where a layer on a rigid base has none: more than the errors of the
+/// table.
 const NOTHING: f64 = 1e-12;
 
 /// The coefficients at offsets (di, dj) ≥ 0, di fastest.
 ///
-/// Love's rectangle on a half-space of the uppermost layer, and the difference from it, which has no singularity: a function of the
-/// distance alone, integrated over the cell.
+/// Love's rectangle on a half-space of the uppermost layer, and the difference from it, which has no singularity: a
+/// function of the distance alone, integrated over the cell.
 pub(super) fn coefficients(grid: &Grid, body: &LayeredBody) -> Result<Vec<f64>, Error> {
     let (nx, ny) = grid.shape();
     let (dx, dy) = (grid.dx(), grid.dy());

@@ -28,36 +28,40 @@ use crate::{Error, Grid};
 ///
 /// # Evaluation
 ///
-/// All are sums of a half-space of the uppermost layer and of a difference, whose transform fades as exp(−2 q h), h the thickness of the
-/// uppermost layer. With a free boundary the difference is a function of the distance,
+/// All are sums of a half-space of the uppermost layer and of a difference, whose transform fades as exp(−2 q h), h the
+/// thickness of the uppermost layer. With a free boundary the difference is a function of the distance,
 ///
 /// ```math
 /// f(r) = \frac{1}{2 \pi} \int_0^\infty \Bigl( q\, \hat C(q) - \frac{2}{E_1^*} \Bigr) J_0(q r)\, \mathrm dq ,
 /// ```
 ///
-/// tabulated and integrated over the cell: C(d) is Love's coefficient with E₁\* plus ∫ f dA. With a periodic boundary it is a sum over
-/// all waves that look alike on the grid, for thin layers with the shortest of them replaced by integrals over cells.
+/// tabulated and integrated over the cell: C(d) is Love's coefficient with E₁\* plus ∫ f dA. With a periodic boundary
+/// it is a sum over all waves that look alike on the grid, for thin layers with the shortest of them replaced by
+/// integrals over cells.
 ///
-/// Coefficients err by some 10⁻¹³ of C(0, 0). What is left of a layer on a rigid base is a difference of the two parts: relative to what
-/// it answers to a wave q, the error is some 10⁻¹⁵ × 2 / (E₁\* q Ĉ(q)), for a thin incompressible layer 10⁻¹⁵ / (q h)³. Where q h is
-/// below 10⁻⁴ on the longest wave of the grid, use [`spectral`](Self::spectral), which takes no difference.
+/// Coefficients err by some 10⁻¹³ of C(0, 0). What is left of a layer on a rigid base is a difference of the two parts:
+/// relative to what it answers to a wave q, the error is some 10⁻¹⁵ × 2 / (E₁\* q Ĉ(q)), for a thin incompressible
+/// layer 10⁻¹⁵ / (q h)³. Where q h is below 10⁻⁴ on the longest wave of the grid, use [`spectral`](Self::spectral),
+/// which takes no difference.
 ///
 /// # Mean displacement
 ///
 /// With a rigid base it is [physical](MeanDisplacement::Physical): a uniform pressure p compresses the layers by Ĉ(0) p
-/// ([`LayeredBody::mean_compliance`]). If all are incompressible, it is zero under any load. The matrix is singular then, and is treated like
-/// that of an [arbitrary](MeanDisplacement::Arbitrary) mean; the approach of the mean planes, which is reported, is the approach of the base,
-/// and its stiffness the interfacial one. On an elastic half-space, or in contact with one, the mean is arbitrary.
+/// ([`LayeredBody::mean_compliance`]). If all are incompressible, it is zero under any load. The matrix is singular
+/// then, and is treated like that of an [arbitrary](MeanDisplacement::Arbitrary) mean; the approach of the mean planes,
+/// which is reported, is the approach of the base, and its stiffness the interfacial one. On an elastic half-space, or
+/// in contact with one, the mean is arbitrary.
 ///
 /// # Growth of contact
 ///
-/// A coat that is stiffer than what it lies on bends over a support, and rises beside it. Contact may then lose nodes as the approach
-/// grows. [`ContactGrowth::Monotone`] is promised where nothing of the kind can happen on the waves of the grid: where the compliance
-/// falls no faster than 1/q and rises no faster than q² (soft coats, layers on a rigid base), and where the inverse of the kernel has no
-/// positive element off the diagonal, or such that its row sums outweigh. With a periodic boundary and none at all gaps are
-/// [convex](ContactGrowth::Convex) as well, unless waves ring. With a free boundary waves longer than the grid count too, which feel what
-/// lies below a coat as thick as the grid is long: its kernel is inverted, on a coarse grid if it has many nodes. Of other bodies
-/// [nothing is promised](ContactGrowth::Unknown): nodes that leave are found as well.
+/// A coat that is stiffer than what it lies on bends over a support, and rises beside it. Contact may then lose nodes
+/// as the approach grows. [`ContactGrowth::Monotone`] is promised where nothing of the kind can happen on the waves of
+/// the grid: where the compliance falls no faster than 1/q and rises no faster than q² (soft coats, layers on a rigid
+/// base), and where the inverse of the kernel has no positive element off the diagonal, or such that its row sums
+/// outweigh. With a periodic boundary and none at all gaps are [convex](ContactGrowth::Convex) as well, unless waves
+/// ring. With a free boundary waves longer than the grid count too, which feel what lies below a coat as thick as the
+/// grid is long: its kernel is inverted, on a coarse grid if it has many nodes. Of other bodies [nothing is
+/// promised](ContactGrowth::Unknown): nodes that leave are found as well.
 ///
 /// # Example
 ///
@@ -99,13 +103,14 @@ enum Pressure {
     Waves,
 }
 
-/// Nodes a side of a grid on which the inverse of a periodic kernel is looked at, or so many thicknesses if these are longer: its waves must
-/// feel what lies below.
+/// Nodes a side of a grid on which the inverse of a periodic kernel is looked at, or so many thicknesses if these are
+/// longer: its waves must feel what lies below.
 const LOOKED_AT: usize = 256;
 const THICKNESSES: f64 = 10.0;
 /// Nodes a side of a grid on which a free kernel is inverted: 20 ms.
 const INVERTED: usize = 16;
-/// In cells of that grid, the thickness from which on the longest waves of the periodic kernel do not tell what longer ones see.
+/// In cells of that grid, the thickness from which on the longest waves of the periodic kernel do not tell what longer
+/// ones see.
 const THICK: f64 = 1.5;
 
 impl Layered {
@@ -189,8 +194,9 @@ impl Layered {
     }
 }
 
-/// Whether contact grows with a free boundary: by the inverse of the kernel itself on a small grid. On a larger one short waves are looked
-/// at with a periodic boundary, and the long ones on a coarse grid of the same sides, unless layers are so thin that the former tell all.
+/// Whether contact grows with a free boundary: by the inverse of the kernel itself on a small grid. On a larger one
+/// short waves are looked at with a periodic boundary, and the long ones on a coarse grid of the same sides, unless
+/// layers are so thin that the former tell all.
 fn free_contact_grows(grid: &Grid, body: &LayeredBody, values: &[f64]) -> Result<bool, Error> {
     let (nx, ny) = grid.shape();
     let shape = (nx.min(INVERTED), ny.min(INVERTED));
@@ -208,7 +214,8 @@ fn free_contact_grows(grid: &Grid, body: &LayeredBody, values: &[f64]) -> Result
     Ok(growth::inverse_keeps_signs(shape, &free::coefficients(&coarse, body)?))
 }
 
-/// Whether the inverse of the periodic kernel on cells of this size is that of an M-matrix, in a gauge that is great enough.
+/// Whether the inverse of the periodic kernel on cells of this size is that of an M-matrix, in a gauge that is great
+/// enough.
 fn is_inverse_m_matrix(grid: &Grid, body: &LayeredBody) -> Result<bool, Error> {
     let (nx, ny) = grid.shape();
     let along = |n: usize, cell: f64| {

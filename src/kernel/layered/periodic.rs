@@ -23,9 +23,9 @@ const THICK: f64 = 3.5;
 
 /// Ĉ of uniform pressures on cells and on all their images, `mean` at k = 0.
 ///
-/// The half-space of the uppermost layer, and the difference from it: a sum over all waves that look alike on the grid. The difference
-/// fades as exp(−2 q h), over many waves if the layer is thin. From some wave number on they are left to the cells themselves: what is
-/// left then has no long waves, and reaches no farther than nine cells.
+/// The half-space of the uppermost layer, and the difference from it: a sum over all waves that look alike on the grid.
+/// The difference fades as exp(−2 q h), over many waves if the layer is thin. From some wave number on they are left to
+/// the cells themselves: what is left then has no long waves, and reaches no farther than nine cells.
 pub(super) fn cells(grid: &Grid, body: &LayeredBody, mean: f64) -> Result<Even, Error> {
     let (nx, ny) = grid.shape();
     let (dx, dy) = (grid.dx(), grid.dy());

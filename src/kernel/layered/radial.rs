@@ -34,8 +34,8 @@ const AVERAGED: usize = 24;
 impl<G: Fn(f64) -> f64> Spectrum<G> {
     /// f(r).
     ///
-    /// From half wave to half wave of J₀ partial integrals lie above and below the limit. Averages of neighbours, and their averages
-    /// in turn, tend to it faster than any power.
+    /// From half wave to half wave of J₀ partial integrals lie above and below the limit. Averages of neighbours, and
+    /// their averages in turn, tend to it faster than any power.
     fn transform(&self, r: f64) -> f64 {
         let half = if r > 0.0 { PI / r } else { f64::INFINITY };
         let settled = self.settled.max(BEFORE * half);
@@ -69,7 +69,8 @@ impl<G: Fn(f64) -> f64> Spectrum<G> {
         sums[0] / TAU
     }
 
-    /// ∫ g J₀ dq between two wave numbers not more than half a wave apart, or below which g does not vary faster than J₀.
+    /// ∫ g J₀ dq between two wave numbers not more than half a wave apart, or below which g does not vary faster than
+    /// J₀.
     fn integral(&self, from: f64, to: f64, r: f64) -> f64 {
         let (mut sum, mut a) = (0.0, from);
         while a < to {
@@ -94,8 +95,8 @@ const WIDTH: f64 = 0.25;
 
 /// A function of the distance, as Chebyshev series on panels.
 ///
-/// Interpolated is f times $`\sqrt{r^2 + s^2}`$ as a function of asinh(r/s), with the scale s of f near the origin: smooth at the
-/// origin, and where f falls as a power of r.
+/// Interpolated is f times $`\sqrt{r^2 + s^2}`$ as a function of asinh(r/s), with the scale s of f near the origin:
+/// smooth at the origin, and where f falls as a power of r.
 #[derive(Debug, Clone)]
 pub(super) struct Radial {
     scale: f64,

@@ -162,14 +162,15 @@ fn limits_of_the_symbol() -> Result<(), Error> {
         // Thirty roundings.
         let ratio = homogeneous.compliance(q) / (2.0 / (e_star * q));
         assert!((ratio - 1.0).abs() < 3e-14, "{q}: {ratio}");
-        // Short waves see the layer: e^(−2qh) (2qh)² is below 1e-80 at q h = 100. Long waves see the base, to q h times the ratio of
-        // the moduli.
+        // Short waves see the layer: e^(−2qh) (2qh)² is below 1e-80 at q h = 100. Long waves see the base, to q h times
+        // the ratio of the moduli.
         let ratio = soft.compliance(q) * soft_star * q / 2.0;
         assert!(q < 1e4 || (ratio - 1.0).abs() < 1e-14, "{q}: {ratio}");
         let ratio = soft.compliance(q) * e_star * q / 2.0;
         assert!(q > 1e-2 || (ratio - 1.0).abs() < 60.0 * q * h, "{q}: {ratio}");
     }
-    // Thin on a rigid base: h (1 − 2ν) / (2 G (1 − ν)), and h³ q² / (3 G) if incompressible; the next orders are (q h)².
+    // Thin on a rigid base: h (1 − 2ν) / (2 G (1 − ν)), and h³ q² / (3 G) if incompressible; the next orders are (q
+    // h)².
     for x in [1e-6, 1e-4, 1e-2] {
         let compressible = on_rigid(young, nu, h)?;
         let uniform = h * (1.0 - 2.0 * nu) / (2.0 * shear * (1.0 - nu));
@@ -313,8 +314,8 @@ fn cells_add_up_all_waves() -> Result<(), Error> {
                     }
                 }
                 let found = symbol.at(kx, ky);
-                // Waves beyond are left out: the uppermost of two layers is 0.09 thick, e^(−2 q h) (q h)² is 1e-27 there. What is added up is of the size of the symbol
-                // of the uppermost layer.
+                // Waves beyond are left out: the uppermost of two layers is 0.09 thick, e^(−2 q h) (q h)² is 1e-27
+                // there. What is added up is of the size of the symbol of the uppermost layer.
                 let scale = found.max(love.symbol(kx, ky));
                 let error = (found - sum).abs() / scale;
                 assert!(
@@ -362,8 +363,8 @@ fn free_layers_on_a_rigid_base_repeat_to_periodic_ones() -> Result<(), Error> {
     Ok(())
 }
 
-/// On an elastic half-space the difference from it falls as r⁻³: periods of 256 cells change differences of near coefficients by less
-/// than rounding.
+/// On an elastic half-space the difference from it falls as r⁻³: periods of 256 cells change differences of near
+/// coefficients by less than rounding.
 #[test]
 fn free_coats_are_periodic_ones_of_long_periods() -> Result<(), Error> {
     let n = 256_usize;
@@ -386,8 +387,8 @@ fn free_coats_are_periodic_ones_of_long_periods() -> Result<(), Error> {
             let first = difference(0, 0);
             for (di, dj) in (0..10).flat_map(|di| (0..8).map(move |dj| (di, dj))) {
                 let error = (difference(di, dj) - first).abs() / scale;
-                // Images change the sum of the second differences of r⁻³ by some 45 d² / 256⁵, and the coefficient of r⁻³ is
-                // h² / (2π E) at most ten times over.
+                // Images change the sum of the second differences of r⁻³ by some 45 d² / 256⁵, and the coefficient of
+                // r⁻³ is h² / (2π E) at most ten times over.
                 let images = 4e-10 * h * h * (di * di + dj * dj) as f64;
                 assert!(error < 1e-12 + images, "{h} {body:?} ({di}, {dj}): {error:e}");
             }

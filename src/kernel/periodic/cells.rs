@@ -2,8 +2,8 @@
 
 use crate::{Error, Grid};
 
-/// `Ok` for cells of a periodic half-space that are at most so many times as long as wide, up to the rounding of sides that
-/// are decimal numbers: cells of 10 µm and 1 µm are 10.000000000000002 : 1.
+/// `Ok` for cells of a periodic half-space that are at most so many times as long as wide, up to the rounding of sides
+/// that are decimal numbers: cells of 10 µm and 1 µm are 10.000000000000002 : 1.
 ///
 /// # Errors
 ///

@@ -11,12 +11,13 @@ use crate::{Error, Grid};
 /// Periods between the grid and its image across, in the periodic kernel that this one is made from.
 const APART: f64 = 5.0;
 
-/// The half-space that is periodic in one direction and free in the other, $`C(\mathbf d)`$ of a cell under uniform pressure
-/// \[m/Pa\].
+/// The half-space that is periodic in one direction and free in the other, $`C(\mathbf d)`$ of a cell under uniform
+/// pressure \[m/Pa\].
 ///
-/// A cell and all its images along x, at distances of the side L = nx Δx of the grid, carry the same uniform pressure, as with
-/// [`PeriodicBoussinesq`]; beyond the edges along y there is no pressure, as with [`Boussinesq`](crate::Boussinesq). So do a long ridge, a
-/// seal or a roller whose profile varies across and whose roughness repeats along. With [`Axis::Y`] it is the other way round.
+/// A cell and all its images along x, at distances of the side L = nx Δx of the grid, carry the same uniform pressure,
+/// as with [`PeriodicBoussinesq`]; beyond the edges along y there is no pressure, as with
+/// [`Boussinesq`](crate::Boussinesq). So do a long ridge, a seal or a roller whose profile varies across and whose
+/// roughness repeats along. With [`Axis::Y`] it is the other way round.
 ///
 /// # What the approach is counted from
 ///
@@ -27,29 +28,31 @@ const APART: f64 = 5.0;
 ///     \frac{2 A}{\pi E^* L} \ln \frac{\ell}{|y|}, \qquad \ell = (2 N + 1) L ,
 /// ```
 ///
-/// far from them, grows with the logarithm of the length ℓ of their row; A is the area of a cell. The coefficients are those of a row of
-/// length R, the [`reference_length`](Self::reference_length):
+/// far from them, grows with the logarithm of the length ℓ of their row; A is the area of a cell. The coefficients are
+/// those of a row of length R, the [`reference_length`](Self::reference_length):
 ///
 /// ```math
 /// C(\mathbf d) = \lim_{N \to \infty} \Bigl( C_N(\mathbf d) - \frac{2 A}{\pi E^* L} \ln \frac{\ell}{R} \Bigr),
 ///     \qquad R = 2 \sqrt{L^2 + L_\perp^2} ,
 /// ```
 ///
-/// twice the diagonal of the grid. Displacement and approach are counted from points at a distance of about R across, which under the load W do not
-/// move. Another length R′ adds a uniform displacement, and changes neither pressures nor gaps nor the order of events:
+/// twice the diagonal of the grid. Displacement and approach are counted from points at a distance of about R across,
+/// which under the load W do not move. Another length R′ adds a uniform displacement, and changes neither pressures nor
+/// gaps nor the order of events:
 ///
 /// ```math
 /// \delta' = \delta + \frac{2 W}{\pi E^* L} \ln \frac{R'}{R} , \qquad
 ///     \frac{1}{K'} = \frac{1}{K} + \frac{2}{\pi E^* L} \ln \frac{R'}{R} .
 /// ```
 ///
-/// In a plane problem, a cylinder on a half-space, it is the same: the approach depends on the depth or distance from which it is counted. The
-/// interfacial stiffness and the mean gap are independent of R.
+/// In a plane problem, a cylinder on a half-space, it is the same: the approach depends on the depth or distance from
+/// which it is counted. The interfacial stiffness and the mean gap are independent of R.
 ///
 /// # Evaluation
 ///
-/// From the [periodic kernel](PeriodicBoussinesq) of period P = Lᵧ + 5 L across. Its waves that vary along x decay as exp(−2π|y|/L),
-/// so that those of the images across are not felt; what does not vary along x is the plane problem, whose images add up in closed form:
+/// From the [periodic kernel](PeriodicBoussinesq) of period P = Lᵧ + 5 L across. Its waves that vary along x decay as
+/// exp(−2π|y|/L), so that those of the images across are not felt; what does not vary along x is the plane problem,
+/// whose images add up in closed form:
 ///
 /// ```math
 /// C(\mathbf d) = C^{(0)}_P(\mathbf d) + \frac{2 A}{\pi E^* L} \Bigl\langle
@@ -57,13 +60,14 @@ const APART: f64 = 5.0;
 /// ```
 ///
 /// averaged over the width of a cell at y. The images left out are below 5 × 10⁻¹⁵ C(0, 0); the rest is as exact as the
-/// periodic kernel, 10⁻¹⁵ C(0, 0) on square cells. Making it takes the time and memory of the periodic kernel on a grid of period P.
+/// periodic kernel, 10⁻¹⁵ C(0, 0) on square cells. Making it takes the time and memory of the periodic kernel on a grid
+/// of period P.
 ///
 /// # Growth of contact
 ///
-/// Where R is great enough the influence matrix is an inverse M-matrix, so that gaps are convex in the approach. In the plane limit,
-/// a strip of the width Lᵧ ≫ L, that is R > e² Lᵧ / 4 = 1.85 Lᵧ; on grids from 2 × 1 to 30 × 30 nodes with cells from 1 : 10 to
-/// 100 : 1 the least R is between 0.31 and 1.79 times the diagonal.
+/// Where R is great enough the influence matrix is an inverse M-matrix, so that gaps are convex in the approach. In the
+/// plane limit, a strip of the width Lᵧ ≫ L, that is R > e² Lᵧ / 4 = 1.85 Lᵧ; on grids from 2 × 1 to 30 × 30 nodes with
+/// cells from 1 : 10 to 100 : 1 the least R is between 0.31 and 1.79 times the diagonal.
 ///
 /// # Example
 ///
@@ -89,7 +93,8 @@ pub struct SemiPeriodicBoussinesq {
 }
 
 impl SemiPeriodicBoussinesq {
-    /// The half-space of composite modulus `e_star` \[Pa\] under the cells of `grid`, periodic `along` one of its sides.
+    /// The half-space of composite modulus `e_star` \[Pa\] under the cells of `grid`, periodic `along` one of its
+    /// sides.
     ///
     /// # Errors
     ///
@@ -151,8 +156,8 @@ struct Plane {
 }
 
 impl Plane {
-    /// ⟨ln(2 R |sin(π y / P)| / |y|)⟩ over the width of a cell. It is singular at the next image only, five widths of a cell and more
-    /// away.
+    /// ⟨ln(2 R |sin(π y / P)| / |y|)⟩ over the width of a cell. It is singular at the next image only, five widths of a
+    /// cell and more away.
     fn mean(&self, y: f64) -> f64 {
         let at = |y: f64| {
             let turn = PI * y / self.period;

@@ -51,8 +51,8 @@ macro_rules! half_space {
         impl $kernel {
             /// The same kernel in the gauge `gauge` \[m/Pa\]; a new kernel has the one described above.
             ///
-            /// Where [`least_gauge`](Self::least_gauge) is known, gaps are convex in the approach from there on; far above
-            /// it, digits are lost, one for each power of ten. In the gauge 0 the matrix is singular.
+            /// Where [`least_gauge`](Self::least_gauge) is known, gaps are convex in the approach from there on; far
+            /// above it, digits are lost, one for each power of ten. In the gauge 0 the matrix is singular.
             ///
             /// # Errors
             ///
@@ -80,8 +80,8 @@ macro_rules! half_space {
                 self.half_space.gauge
             }
 
-            /// The least gauge s\* \[m/Pa\] in which the kernel is an inverse M-matrix; zero on a single node. `None` if there
-            /// is none, or if rounding hides it, on extremely long cells. It takes a Fourier transform.
+            /// The least gauge s\* \[m/Pa\] in which the kernel is an inverse M-matrix; zero on a single node. `None`
+            /// if there is none, or if rounding hides it, on extremely long cells. It takes a Fourier transform.
             #[must_use]
             pub fn least_gauge(&self) -> Option<f64> {
                 symmetric::least_gauge(&self.half_space.grid, &self.half_space.symbol)

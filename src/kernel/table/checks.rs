@@ -16,7 +16,8 @@ impl KernelTable {
         Ok(())
     }
 
-    /// Compares every coefficient with those one period further, if the boundary has periods and where the table has them.
+    /// Compares every coefficient with those one period further, if the boundary has periods and where the table has
+    /// them.
     pub(super) fn check_periodicity(&self) -> Result<(), Error> {
         let (nx, ny) = self.grid.shape();
         let [x_repeats, y_repeats] = self.boundary.repeats();

@@ -128,8 +128,8 @@ impl KernelTable {
     }
 }
 
-/// For each offset of blocks along a direction the offsets of cells, and their weights: sums over the sources, averages over the
-/// observers.
+/// For each offset of blocks along a direction the offsets of cells, and their weights: sums over the sources, averages
+/// over the observers.
 struct Overlaps {
     /// From minus the number of blocks, without it, to that number.
     offsets: Vec<Vec<(isize, f64)>>,

@@ -10,11 +10,11 @@ use super::gauge::of_coefficients;
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid, KernelError};
 
-/// Beyond so many times a good one, digits of everything else are lost beside a gauge: a convex promise holds from a least
-/// gauge on, which may be as far above a good one on long cells.
+/// Beyond so many times a good one, digits of everything else are lost beside a gauge: a convex promise holds from a
+/// least gauge on, which may be as far above a good one on long cells.
 const GREATEST_CONVEX_GAUGE: f64 = 1e3;
-/// The same for other kernels, whose contact is the same in every gauge; and what stands in for a gauge that is greater, as a
-/// multiple of a good one.
+/// The same for other kernels, whose contact is the same in every gauge; and what stands in for a gauge that is
+/// greater, as a multiple of a good one.
 const LARGE_GAUGE: f64 = 10.0;
 
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
@@ -160,13 +160,13 @@ impl KernelTable {
     /// an even number of nodes have their full weight, and take the mean of both directions in which
     /// they can be said to run.
     ///
-    /// `mean` says how q = 0 is taken. If the mean displacement is
-    /// [physical](MeanDisplacement::Physical), Ĉ(0) is what a uniform pressure does, u = Ĉ(0) p, and
-    /// must be finite. It may be zero, as of an incompressible layer on a rigid base, which no uniform pressure can compress: the mean
-    /// displacement is then zero under any load, and the table treats it like an arbitrary one, because what is reported of that, an
-    /// approach without the mean displacement, is then the approach itself. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies without a base,
-    /// where the symbol diverges, the symbol is not evaluated at q = 0, and the kernel gets a gauge that
-    /// is good to compute in.
+    /// `mean` says how q = 0 is taken. If the mean displacement is [physical](MeanDisplacement::Physical), Ĉ(0) is what
+    /// a uniform pressure does, u = Ĉ(0) p, and must be finite. It may be zero, as of an incompressible layer on a
+    /// rigid base, which no uniform pressure can compress: the mean displacement is then zero under any load, and the
+    /// table treats it like an arbitrary one, because what is reported of that, an approach without the mean
+    /// displacement, is then the approach itself. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies
+    /// without a base, where the symbol diverges, the symbol is not evaluated at q = 0, and the kernel gets a gauge
+    /// that is good to compute in.
     ///
     /// There is no such constructor for a free boundary: a finite number of waves only describes bodies
     /// that repeat, and a symbol sampled on a larger grid gives the displacements of all its images as

@@ -10,8 +10,8 @@ use crate::{Error, Grid, KernelError};
 /// evaluated in another order, or with functions that are good to some ten digits.
 const SAME: f64 = 1e-10;
 
-/// The coefficients C(r) \[m/Pa\] of one period, x fastest, from the symbol Ĉ(q) \[m/Pa\]; and how the mean displacement is to be
-/// taken: one that is zero, of an incompressible layer, like one that is arbitrary.
+/// The coefficients C(r) \[m/Pa\] of one period, x fastest, from the symbol Ĉ(q) \[m/Pa\]; and how the mean
+/// displacement is to be taken: one that is zero, of an incompressible layer, like one that is arbitrary.
 ///
 /// # Errors
 ///

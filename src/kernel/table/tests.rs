@@ -50,8 +50,8 @@ fn another_gauge_is_a_uniform_displacement() -> Result<(), Error> {
     Ok(())
 }
 
-/// Paths are followed in the gauge of the kernel, unless a coefficient is negative in it or it is beyond ten good ones, beyond
-/// a thousand under a convex promise.
+/// Paths are followed in the gauge of the kernel, unless a coefficient is negative in it or it is beyond ten good ones,
+/// beyond a thousand under a convex promise.
 #[test]
 fn gauges_that_spoil_a_path_are_exchanged() -> Result<(), Error> {
     let grid = Grid::new(7, 6, 1.0, 40.0)?;

@@ -7,7 +7,8 @@ fn contact(nodes: usize, is_in: &[usize]) -> NodeSet {
     contact
 }
 
-/// With no more nodes in contact than a pattern has room for, nothing is left out: C M b is b, but for single precision.
+/// With no more nodes in contact than a pattern has room for, nothing is left out: C M b is b, but for single
+/// precision.
 #[test]
 fn few_nodes_are_inverted_exactly() -> Result<(), Error> {
     let table = crate::KernelTable::from_fn(
@@ -39,7 +40,8 @@ fn few_nodes_are_inverted_exactly() -> Result<(), Error> {
     Ok(())
 }
 
-/// Patterns of 18 numbers of four bytes, the index of what they were made of, contact nodes, and four fields of the grid.
+/// Patterns of 18 numbers of four bytes, the index of what they were made of, contact nodes, and four fields of the
+/// grid.
 #[test]
 fn bytes_are_those_held() -> Result<(), Error> {
     let mut inverse: SparseInverse = SparseInverse::new(&test_chain::kernel(30)?);

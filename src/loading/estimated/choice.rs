@@ -105,8 +105,8 @@ mod tests {
     use crate::Error;
     use crate::loading::test_chain;
 
-    /// What is chosen of nodes that touch at `times`, the last node first, with `contact` nodes in contact. Ties alone matter: all
-    /// gaps close at the rate 1.
+    /// What is chosen of nodes that touch at `times`, the last node first, with `contact` nodes in contact. Ties alone
+    /// matter: all gaps close at the rate 1.
     fn choose(
         (size, contact): (usize, usize),
         times: &[f64],

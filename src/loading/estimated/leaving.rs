@@ -1,11 +1,12 @@
 //! Windows on bodies on which nodes may leave: until one does.
 //!
-//! Nodes only touch in such a window. It ends before the first pressure falls to zero, as far as the lines at its beginning tell, and its
-//! end is a solution that is checked as on other bodies, and for tension everywhere. In between pressures and gaps are lines from one event
-//! to the next, so that a node that has left or touched and is back at the end is found by looking at each event. There, the pressures on
-//! the nodes that have touched so far follow from the corrected Schur complement, what they take off the contact near them from local
-//! solutions, and what these leave out at the end is added as a cubic in time. What is too close to zero to be told counts as contradicted:
-//! then the window ends before, in the end with single events that have solutions of their own.
+//! Nodes only touch in such a window. It ends before the first pressure falls to zero, as far as the lines at its
+//! beginning tell, and its end is a solution that is checked as on other bodies, and for tension everywhere. In between
+//! pressures and gaps are lines from one event to the next, so that a node that has left or touched and is back at the
+//! end is found by looking at each event. There, the pressures on the nodes that have touched so far follow from the
+//! corrected Schur complement, what they take off the contact near them from local solutions, and what these leave out
+//! at the end is added as a cubic in time. What is too close to zero to be told counts as contradicted: then the window
+//! ends before, in the end with single events that have solutions of their own.
 
 use crate::contact::ContactSequence;
 use crate::loading::gap_field::GapLine;
@@ -67,7 +68,8 @@ impl Before {
         }
     }
 
-    /// Until when no pressure was negative, of those that are at the solution on a contact at an approach after a time; `None` if none is.
+    /// Until when no pressure was negative, of those that are at the solution on a contact at an approach after a time;
+    /// `None` if none is.
     pub(super) fn sound_until(
         &self,
         run: &LoadingRun,
@@ -82,8 +84,8 @@ impl Before {
         times.reduce(f64::min)
     }
 
-    /// Until when nothing contradicts a corrected window and its events between its beginning and its end after `span`, where the
-    /// solution on a contact is; `None` if nothing does at all.
+    /// Until when nothing contradicts a corrected window and its events between its beginning and its end after `span`,
+    /// where the solution on a contact is; `None` if nothing does at all.
     pub(super) fn sound_between(
         &self,
         run: &LoadingRun,
@@ -223,8 +225,8 @@ impl Course {
         terms.iter().map(|&(event, factor)| factor * pressures.get(event).unwrap_or(&0.0)).sum()
     }
 
-    /// Until when a value stays above `least` that begins and ends with values and slopes, and that pressures on nodes that touched
-    /// change by some terms; infinity if it does throughout. The first event is at `first`.
+    /// Until when a value stays above `least` that begins and ends with values and slopes, and that pressures on nodes
+    /// that touched change by some terms; infinity if it does throughout. The first event is at `first`.
     fn sound_until(
         &self,
         ([value, slope], end): ([f64; 2], [f64; 2]),
@@ -279,8 +281,9 @@ impl Course {
         f64::INFINITY
     }
 
-    /// By how much the gap of any node may be below the chord from the beginning to the end, at each time: with what pressures differ
-    /// from theirs by, `|S_oj δp_j| ≤ √(S_oo δpᵀ S δp)` for S is positive definite, and S_oo is no greater than C(0, 0).
+    /// By how much the gap of any node may be below the chord from the beginning to the end, at each time: with what
+    /// pressures differ from theirs by, `|S_oj δp_j| ≤ √(S_oo δpᵀ S δp)` for S is positive definite, and S_oo is no
+    /// greater than C(0, 0).
     fn bounds(&self, schur: &Schur, self_influence: f64) -> Vec<f64> {
         let (span, end) = (self.span(), &self.pressures[self.times.len() - 1]);
         let bound = |(time, pressures): (&f64, &Vec<f64>)| {

@@ -1,8 +1,9 @@
 //! Events in windows, without a factor: with a matrix that is nearly exact.
 //!
-//! The order of events inside a window rests on small changes only, so that a matrix that is nearly right gives nearly the right order.
-//! The exact solution at the window's end, which the next window needs anyway, then corrects it, and the same events are played a second
-//! time. What is still closer than the remaining error is settled by one exact solution each.
+//! The order of events inside a window rests on small changes only, so that a matrix that is nearly right gives nearly
+//! the right order. The exact solution at the window's end, which the next window needs anyway, then corrects it, and
+//! the same events are played a second time. What is still closer than the remaining error is settled by one exact
+//! solution each.
 
 pub(super) mod choice;
 pub(super) mod leaving;
@@ -45,7 +46,8 @@ pub(super) struct Estimated {
     settles: bool,
     /// Whether nodes may leave.
     may_leave: bool,
-    /// The nodes to which something may happen by the time when it would if nothing else came first, at the present approach.
+    /// The nodes to which something may happen by the time when it would if nothing else came first, at the present
+    /// approach.
     ranking: Ranking,
     /// From when on nodes would yield that are not ranked.
     beyond: f64,
@@ -97,7 +99,8 @@ impl Estimated {
         Self { may_leave: true, ..Self::new(size, settles) }
     }
 
-    /// Computes a window of states before the next node leaves, where nodes may. Without one nothing has happened to the path.
+    /// Computes a window of states before the next node leaves, where nodes may. Without one nothing has happened to
+    /// the path.
     pub(super) fn attempt(
         &mut self,
         run: &mut LoadingRun,
@@ -131,8 +134,8 @@ impl Estimated {
         Ok(attempt)
     }
 
-    /// Computes a window of states; none if no node is left to touch or to yield. A whole one, wherever the path is to end: one that goes
-    /// on behind that has the same windows.
+    /// Computes a window of states; none if no node is left to touch or to yield. A whole one, wherever the path is to
+    /// end: one that goes on behind that has the same windows.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
@@ -234,7 +237,8 @@ impl Estimated {
         Ok(())
     }
 
-    /// Opens a window on the candidates, with lines that are better known than those of the gap field, no longer than a time.
+    /// Opens a window on the candidates, with lines that are better known than those of the gap field, no longer than a
+    /// time.
     fn propose(
         &self,
         run: &mut LoadingRun,
@@ -392,8 +396,8 @@ impl Estimated {
         }
     }
 
-    /// How much earlier than the end of a window after `time`, where the solution is, the first of what contradicts it was not yet, as far
-    /// as rates tell; `None` if nothing does. A window that cannot be shorter may be off by more.
+    /// How much earlier than the end of a window after `time`, where the solution is, the first of what contradicts it
+    /// was not yet, as far as rates tell; `None` if nothing does. A window that cannot be shorter may be off by more.
     fn contradicted(
         run: &LoadingRun,
         trial: &Trial,
@@ -422,8 +426,8 @@ impl Estimated {
         Some(until)
     }
 
-    /// Corrects a window by the solution at its end, and settles the events in it; `None` if the end, or a solution in between,
-    /// contradicts what was expected.
+    /// Corrects a window by the solution at its end, and settles the events in it; `None` if the end, or a solution in
+    /// between, contradicts what was expected.
     fn refine(
         &mut self,
         run: &mut LoadingRun,
@@ -466,7 +470,8 @@ impl Estimated {
         }))
     }
 
-    /// How many events a window may have. Their times are off by what matrices leave out of pivots, which grows with their number.
+    /// How many events a window may have. Their times are off by what matrices leave out of pivots, which grows with
+    /// their number.
     fn most_events(&self) -> usize {
         ((LEFT_OUT / self.left_out) as usize).max(1)
     }
@@ -517,9 +522,9 @@ fn go_to(
     run.field.advance(&behind, iterations, span)
 }
 
-/// By how much the solution on a contact at an approach may contradict what contact that grows does: where the window can be shorter,
-/// and at all. What is left of gaps in contact says how far pressures are off, and gaps elsewhere: by less, for they see all of it
-/// from afar.
+/// By how much the solution on a contact at an approach may contradict what contact that grows does: where the window
+/// can be shorter, and at all. What is left of gaps in contact says how far pressures are off, and gaps elsewhere: by
+/// less, for they see all of it from afar.
 fn slacks(
     run: &LoadingRun,
     (problem, contact): (&Problem, &ContactSequence),
@@ -537,8 +542,8 @@ fn slacks(
     [of(left, solved), of(left, tolerances.overlap(approach))]
 }
 
-/// How fast the event of a node comes, relative to the approach: how fast its gap closes, or its pressure rises times what a pressure
-/// displaces. `place` is where it is in the contact.
+/// How fast the event of a node comes, relative to the approach: how fast its gap closes, or its pressure rises times
+/// what a pressure displaces. `place` is where it is in the contact.
 fn closing(run: &LoadingRun, node: usize, place: Option<usize>) -> f64 {
     match place {
         Some(place) => run.field.solution().rate[place] * run.problem.table().self_influence(),
@@ -574,8 +579,8 @@ pub(super) fn values_before(
     Ok(nodes.iter().map(value).collect())
 }
 
-/// What has become of the watched nodes by the solution at the window's end: pressures, or overlaps of nodes that were elastic; and
-/// gaps, or pressures of those.
+/// What has become of the watched nodes by the solution at the window's end: pressures, or overlaps of nodes that were
+/// elastic; and gaps, or pressures of those.
 fn at_end(run: &LoadingRun, window: &Window, (trial, approach): (&Trial, f64)) -> Vec<AtEnd> {
     let places = trial.contact.places();
     let solution = run.field.solution();

@@ -18,7 +18,8 @@ use crate::updater::{Behind, Iterations};
 type NodeEvent = (usize, ContactEvent);
 
 impl Estimated {
-    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices.
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their
+    /// indices.
     pub(super) fn enter(
         &mut self,
         run: &mut LoadingRun,
@@ -62,8 +63,8 @@ impl Estimated {
         }
     }
 
-    /// Lets the path follow events that come together after a time, up to `most_late` later: in windows with a solution behind each.
-    /// Returns the rates behind each event, and how much later they are.
+    /// Lets the path follow events that come together after a time, up to `most_late` later: in windows with a solution
+    /// behind each. Returns the rates behind each event, and how much later they are.
     fn pass_together(
         &mut self,
         run: &mut LoadingRun,
@@ -88,7 +89,8 @@ impl Estimated {
                 window.happen(position, 0.0).map_err(|bad| run.not_positive_definite(bad))?;
             }
             let trial = Trial::of(run, now)?;
-            // The approach goes on from the last of them only. However little is left open by so many nodes: rates must be exact there.
+            // The approach goes on from the last of them only. However little is left open by so many nodes: rates must
+            // be exact there.
             let is_last = left.is_empty();
             self.rate_span = if is_last { f64::INFINITY } else { 0.0 };
             go_to(run, iterations, &trial, (approach, self.rate_span))?;
@@ -121,8 +123,9 @@ impl Estimated {
         tolerances: &WindowTolerances,
         (trial, approach, most_late): (&Trial, f64, f64),
     ) -> Result<f64, Error> {
-        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
-        // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
+        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change
+        // far faster than what these were estimated from, so that depths that are negative then tell the time better:
+        // all of them are lines.
         let [_, most] =
             slacks(run, (trial.problem(&run.problem), &trial.contact), tolerances, approach);
         let late = lateness(run, trial, (approach, most));
@@ -154,8 +157,8 @@ fn pulled(
     run.field.pressures(contact, approach).find(|(_, pressure)| *pressure < -tension)
 }
 
-/// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what
-/// a solution may be off by.
+/// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that
+/// are beyond what a solution may be off by.
 fn lateness(run: &LoadingRun, trial: &Trial, (approach, slack): (f64, Slack)) -> f64 {
     let (problem, contact, _) = trial.set(run);
     let plastic = run.plastic.as_deref();

@@ -7,8 +7,8 @@ use crate::loading::tolerances::WindowTolerances;
 use crate::updater::{Iterations, Kept};
 use crate::{Error, UpdaterError};
 
-/// Everything on which the next window without a factor depends, besides problem and contact. The gaps, their ranking and the
-/// scalars follow from it, by the same arithmetic as at the end of the window.
+/// Everything on which the next window without a factor depends, besides problem and contact. The gaps, their ranking
+/// and the scalars follow from it, by the same arithmetic as at the end of the window.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EstimatedEnd {
     /// Whether events that were too close were settled.
@@ -33,7 +33,8 @@ impl EstimatedEnd {
     ///
     /// # Errors
     ///
-    /// [`UpdaterError::UpdaterMismatch`] and those of the contact if other nodes than the last ones joined in the window.
+    /// [`UpdaterError::UpdaterMismatch`] and those of the contact if other nodes than the last ones joined in the
+    /// window.
     pub(in crate::loading) fn contact(
         &self,
         contact: &ContactSequence,
@@ -49,7 +50,8 @@ impl EstimatedEnd {
 }
 
 impl Estimated {
-    /// What the next window depends on, behind a window or an event with a solution of its own; `None` if the iterations cannot tell.
+    /// What the next window depends on, behind a window or an event with a solution of its own; `None` if the
+    /// iterations cannot tell.
     pub(in crate::loading) fn end(
         &self,
         run: &LoadingRun,

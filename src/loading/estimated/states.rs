@@ -19,8 +19,8 @@ pub(super) struct Passed {
     pub(super) span: f64,
 }
 
-/// What has changed along a window while nodes were elastic: the approach, and both plastic sums. On plateaus, where none is, all rates
-/// are known.
+/// What has changed along a window while nodes were elastic: the approach, and both plastic sums. On plateaus, where
+/// none is, all rates are known.
 #[derive(Debug, Clone, Copy, Default)]
 struct Open([f64; 3]);
 
@@ -58,8 +58,8 @@ fn rates_of([unit_stiffness, closing, depth, work]: [f64; 4]) -> Rates {
     Rates { unit_stiffness, closing, plastic: [depth, work] }
 }
 
-/// Rates of events with what they lack at the end, where they are `exact`: in proportion to how much the events so far have changed
-/// them.
+/// Rates of events with what they lack at the end, where they are `exact`: in proportion to how much the events so far
+/// have changed them.
 pub(super) fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
     let (start, exact) = (numbers(start), numbers(exact));
     let events: Vec<[f64; 4]> = events.iter().map(numbers).collect();
@@ -83,7 +83,8 @@ pub(super) fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<R
     found.into_iter().map(rates_of).collect()
 }
 
-/// The stiffness of so many elastic nodes that is nearly `found`: one of them has that of one `alone`, and more are stiffer.
+/// The stiffness of so many elastic nodes that is nearly `found`: one of them has that of one `alone`, and more are
+/// stiffer.
 fn stiffness_of(elastic: usize, found: f64, alone: f64) -> f64 {
     match elastic {
         0 => found,
@@ -92,10 +93,11 @@ fn stiffness_of(elastic: usize, found: f64, alone: f64) -> f64 {
     }
 }
 
-/// Queues the states of the events of a corrected window, which the path has gone through, from where it began to the present approach.
+/// Queues the states of the events of a corrected window, which the path has gone through, from where it began to the
+/// present approach.
 ///
-/// Rates are those of its matrix, and end where they should; load, mean gap, energies and plastic sums follow by integration, and what
-/// they lack at the end, a few parts in a million, is spread along the way.
+/// Rates are those of its matrix, and end where they should; load, mean gap, energies and plastic sums follow by
+/// integration, and what they lack at the end, a few parts in a million, is spread along the way.
 pub(super) fn enqueue(
     run: &mut LoadingRun,
     (mut window, settled): (Window, &Settled),
@@ -141,8 +143,8 @@ pub(super) fn enqueue(
         along.push((walked, open));
     }
     open.advance(&mut walked, run.scalars.approach(), walk.carried.nodes[0]);
-    // What the load may be off by: what is spread, what rates of nodes that yield are off by, and what the events so far would change of
-    // it.
+    // What the load may be off by: what is spread, what rates of nodes that yield are off by, and what the events so
+    // far would change of it.
     let spacing = span / events.len() as f64;
     let of_rates = if yields { RATE_ERROR } else { 0.0 };
     let mut load_error = run.scalars.load_beyond(&walked).abs()
@@ -216,8 +218,8 @@ mod tests {
         Passed { start: begun.scalars, before: Carried::of(begun), span: 2.0 }
     }
 
-    /// From the approach 1 to 3, nodes 2 and 4 touch at 1.5 and 2.5: states are those of solutions there, if pivots are right and
-    /// if all of them are wrong by one factor.
+    /// From the approach 1 to 3, nodes 2 and 4 touch at 1.5 and 2.5: states are those of solutions there, if pivots are
+    /// right and if all of them are wrong by one factor.
     #[test]
     fn states_between_solutions_are_theirs() -> Result<(), Error> {
         for factor in [1.0, 2.0] {
@@ -279,8 +281,8 @@ mod tests {
         Ok(())
     }
 
-    /// One elastic node, a plateau with one that has yielded, and an elastic one beside it: what the window lacks belongs to the first
-    /// and the last third.
+    /// One elastic node, a plateau with one that has yielded, and an elastic one beside it: what the window lacks
+    /// belongs to the first and the last third.
     #[test]
     fn plateaus_lack_nothing() -> Result<(), Error> {
         let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 5.0])?;

@@ -26,8 +26,8 @@ fn problems(n: usize) -> Result<(HeightMap, [Box<dyn InfluenceKernel>; 3]), Erro
     Ok((HeightMap::sample(&surface, &grid)?, kernels))
 }
 
-/// Exact solutions, and matrices M that exceed the exact one by a positive semidefinite matrix of rank 1: pivots are off by up to
-/// `4 part²`, of nodes out of contact upwards and of nodes in it downwards.
+/// Exact solutions, and matrices M that exceed the exact one by a positive semidefinite matrix of rank 1: pivots are
+/// off by up to `4 part²`, of nodes out of contact upwards and of nodes in it downwards.
 fn off_by(part: f64) -> Altered {
     Altered::estimates(1e-10, move |(schur, _): &mut Proposal| {
         let size = schur.size();
@@ -68,8 +68,8 @@ fn exact(
     builder.updater(RecursiveCholesky::new()).build()?.collect()
 }
 
-/// The correction belongs to the path and not to conjugate gradients: the same events of both kinds with matrices that are right, and
-/// with pivots that are off by a part in a thousand between the ends of windows.
+/// The correction belongs to the path and not to conjugate gradients: the same events of both kinds with matrices that
+/// are right, and with pivots that are off by a part in a thousand between the ends of windows.
 #[test]
 fn any_iterations_are_corrected_where_nodes_yield() -> Result<(), Error> {
     let (surface, kernels) = problems(16)?;
@@ -97,16 +97,16 @@ fn any_iterations_are_corrected_where_nodes_yield() -> Result<(), Error> {
     Ok(())
 }
 
-/// Matrices that are wrong by a fifth say when the wrong nodes touch and yield. Ends contradict that, and windows become shorter: what
-/// happens is right but for neighbours.
+/// Matrices that are wrong by a fifth say when the wrong nodes touch and yield. Ends contradict that, and windows
+/// become shorter: what happens is right but for neighbours.
 #[test]
 fn windows_that_are_contradicted_become_shorter() -> Result<(), Error> {
     let (surface, kernels) = problems(16)?;
     for kernel in &kernels {
         let exact = exact(&surface, &**kernel, Some(HARDNESS))?;
         let (found, taken_back) = followed(&surface, &**kernel, off_by(0.22))?;
-        // Few are, since all windows behind the first are short; longer ones, of a matrix that is right, are contradicted more often, by
-        // nodes that are not watched.
+        // Few are, since all windows behind the first are short; longer ones, of a matrix that is right, are
+        // contradicted more often, by nodes that are not watched.
         assert!(taken_back > 0, "{taken_back}");
         assert_eq!(found.len(), exact.len());
         let mut nodes: Vec<(bool, (usize, usize))> =
@@ -127,8 +127,8 @@ fn windows_that_are_contradicted_become_shorter() -> Result<(), Error> {
     Ok(())
 }
 
-/// The correction belongs to the path and not to conjugate gradients: the same events, and pivots that are off by a part in a
-/// thousand between the ends of windows.
+/// The correction belongs to the path and not to conjugate gradients: the same events, and pivots that are off by a
+/// part in a thousand between the ends of windows.
 #[test]
 fn any_iterations_are_corrected() -> Result<(), Error> {
     let (surface, kernels) = problems(20)?;

@@ -90,7 +90,8 @@ fn a_node_that_overlaps_unwatched_is_watched() -> Result<(), Error> {
     Ok(())
 }
 
-/// Between two nodes in contact the surface sinks faster than they do, 2 · 0.7 / (1 + 0.2) > 1: the third never touches.
+/// Between two nodes in contact the surface sinks faster than they do, 2 · 0.7 / (1 + 0.2) > 1: the third never
+/// touches.
 #[test]
 fn a_gap_that_never_closes_is_named() -> Result<(), Error> {
     let kernel = Strip::new(&[1.0, 0.7, 0.2], ContactGrowth::Monotone)?;

@@ -22,8 +22,8 @@ fn windows_have_their_sizes() {
     assert_eq!([size(Some(3), true), size(Some(20), false)], [8, 20]);
 }
 
-/// Nodes 2, 4 and 6 are watched beside node 0 from the approach 1 on, and the first two join before 2. There gaps may overlap by
-/// 100 · 10⁻⁵ · 2, and pressures times a compliance be a multiple of that below nothing.
+/// Nodes 2, 4 and 6 are watched beside node 0 from the approach 1 on, and the first two join before 2. There gaps may
+/// overlap by 100 · 10⁻⁵ · 2, and pressures times a compliance be a multiple of that below nothing.
 #[test]
 fn contradictions_at_the_end_are_found() -> Result<(), Error> {
     let far = 20.0;
@@ -56,8 +56,8 @@ fn contradictions_at_the_end_are_found() -> Result<(), Error> {
     Ok(())
 }
 
-/// Rates that serve as far as the last event are left alone; where they have to serve more than twice as far, they have to be more than
-/// twice as exact.
+/// Rates that serve as far as the last event are left alone; where they have to serve more than twice as far, they have
+/// to be more than twice as exact.
 #[test]
 fn rates_are_found_again_if_they_have_to_serve_much_further() -> Result<(), Error> {
     let gaps = [0.0, 9.0, 1.25, 9.0, 1.5, 9.0];
@@ -101,8 +101,8 @@ fn a_window_begins_with_a_solution() -> Result<(), Error> {
     Ok(())
 }
 
-/// Nodes 1 and 3 beside node 0, which carries 1/4 at the approach 1: gaps of 5 + 1/4 − 1 and 7 − 1 that close at 3/4 and 1, unless
-/// the iterations know better. S = (4 − 1/4, 0; 0, 4), and row sums of 6 − 5/4 and 6.
+/// Nodes 1 and 3 beside node 0, which carries 1/4 at the approach 1: gaps of 5 + 1/4 − 1 and 7 − 1 that close at 3/4
+/// and 1, unless the iterations know better. S = (4 − 1/4, 0; 0, 4), and row sums of 6 − 5/4 and 6.
 #[test]
 fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
     for (knows, lines) in [(false, [[4.25, 0.75], [6.0, 1.0]]), (true, [[4.5, 0.75], [6.5, 0.75]])]
@@ -136,7 +136,8 @@ fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
     Ok(())
 }
 
-/// From the approach 1 on nodes 2 and 4 touch at 1.5 and 2.5; nothing else is near. The window ends behind both, and their states wait.
+/// From the approach 1 on nodes 2 and 4 touch at 1.5 and 2.5; nothing else is near. The window ends behind both, and
+/// their states wait.
 #[test]
 fn windows_are_gone_through() -> Result<(), Error> {
     let (mut run, mut estimated) = begun(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0])?;
@@ -171,7 +172,8 @@ fn windows_end_before_nodes_that_are_not_watched() -> Result<(), Error> {
     Ok(())
 }
 
-/// One that touches before the first event contradicts the window itself, however short it is. Nothing has happened then.
+/// One that touches before the first event contradicts the window itself, however short it is. Nothing has happened
+/// then.
 #[test]
 fn windows_that_cannot_be_are_errors() -> Result<(), Error> {
     let (mut run, mut estimated) = begun(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0, 1.25, 9.0])?;
@@ -184,8 +186,9 @@ fn windows_that_cannot_be_are_errors() -> Result<(), Error> {
     Ok(())
 }
 
-/// Where nodes lift their neighbours towards the surface, a node between two in contact touches before the time at which it
-/// would alone: node 1, of 1 m, is the tenth and not watched; at the end of the window, near 0.75 m, it overlaps. Once.
+/// Where nodes lift their neighbours towards the surface, a node between two in contact touches before the time at
+/// which it would alone: node 1, of 1 m, is the tenth and not watched; at the end of the window, near 0.75 m, it
+/// overlaps. Once.
 #[test]
 fn nodes_that_come_sooner_make_windows_shorter() -> Result<(), Error> {
     let coefficient =
@@ -217,8 +220,8 @@ fn nodes_that_come_sooner_make_windows_shorter() -> Result<(), Error> {
     Ok(())
 }
 
-/// From the approach 1 on a watched node, 4, is thought to touch after 0.6 m, which it does after 1.6 m; or after 3 m, which it
-/// does after 0.8 m. At the window's end it is under tension, or overlaps: the window ends before.
+/// From the approach 1 on a watched node, 4, is thought to touch after 0.6 m, which it does after 1.6 m; or after 3 m,
+/// which it does after 0.8 m. At the window's end it is under tension, or overlaps: the window ends before.
 #[test]
 fn ends_that_are_contradicted_come_sooner() -> Result<(), Error> {
     for (thought, gap) in [(0.6, 2.6), (3.0, 1.8)] {
@@ -243,9 +246,9 @@ fn windows_have_fewer_events_where_more_is_left_out() {
     }
 }
 
-/// The Schur complement says that no node acts on another one, and its pivots are twice what they are: at the end of a window of
-/// three events two fifths of a pivot are taken off, which is too much for three. Nothing has happened then, and the next window has
-/// one event.
+/// The Schur complement says that no node acts on another one, and its pivots are twice what they are: at the end of a
+/// window of three events two fifths of a pivot are taken off, which is too much for three. Nothing has happened then,
+/// and the next window has one event.
 #[test]
 fn windows_that_leave_out_much_are_taken_back() -> Result<(), Error> {
     let gaps = [0.0, 9.0, 1.5, 9.0, 2.0, 9.0, 2.5, 9.0];
@@ -269,8 +272,8 @@ fn windows_that_leave_out_much_are_taken_back() -> Result<(), Error> {
     Ok(())
 }
 
-/// Of nodes that joined pressure and rate, of others gap and slope: with nodes 0 and 2 in contact at the approach 3, which
-/// carry 3/4 and 1/2, node 1 between them has sunk by 5/4 and sinks by a half more for each metre.
+/// Of nodes that joined pressure and rate, of others gap and slope: with nodes 0 and 2 in contact at the approach 3,
+/// which carry 3/4 and 1/2, node 1 between them has sunk by 5/4 and sinks by a half more for each metre.
 #[test]
 fn the_end_of_a_window_is_that_of_its_solution() -> Result<(), Error> {
     let mut run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[], 0.0)?;

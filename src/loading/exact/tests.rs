@@ -17,8 +17,8 @@ fn chosen(open_nodes: &[usize], size: usize, multiple: usize) -> (Vec<usize>, f6
     (nodes.collect(), horizon)
 }
 
-/// Six of ten nodes tie with one that touches after 1: of these the lowest are watched, and played whatever the others do, up to
-/// rounding of the approach of 10⁴. What ties after 2 is not played unless all of it is watched.
+/// Six of ten nodes tie with one that touches after 1: of these the lowest are watched, and played whatever the others
+/// do, up to rounding of the approach of 10⁴. What ties after 2 is not played unless all of it is watched.
 #[test]
 fn of_nodes_that_touch_at_once_the_lowest_are_chosen() {
     let (approach, tie) = (1e4, 1e-9);
@@ -93,8 +93,8 @@ fn right_until(run: &LoadingRun, approach: f64) -> Option<f64> {
     until.map(|until| approach + until)
 }
 
-/// Node 0 carries a quarter of the approach: 0.15 m of overlap beside it, where gaps close at 3/4, began a fifth of a metre
-/// ago, and half a metre far from it half a metre ago.
+/// Node 0 carries a quarter of the approach: 0.15 m of overlap beside it, where gaps close at 3/4, began a fifth of a
+/// metre ago, and half a metre far from it half a metre ago.
 #[test]
 fn the_first_contradiction_is_found() -> Result<(), Error> {
     let near = |found: Option<f64>, expected: f64| {
@@ -118,8 +118,8 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
         let run = test_chain::solved(&[0.0, 9.0, 1.0 - overlap], &[0], 1.0)?;
         assert_eq!(right_until(&run, 1.0).is_some(), is_one, "{overlap:e}");
     }
-    // When tension began is not known, nor when a gap overlapped that does not close: between two nodes that push it down
-    // by 3/4 m each for each metre.
+    // When tension began is not known, nor when a gap overlapped that does not close: between two nodes that push it
+    // down by 3/4 m each for each metre.
     let tension = test_chain::solved(&[0.0, 9.0, 1.5], &[0, 2], 1.0)?;
     assert_eq!(right_until(&tension, 1.0), Some(f64::NEG_INFINITY));
     let mut given = test_chain::Altered::given(vec![1.0; 2], vec![0.75; 2]);
@@ -131,8 +131,8 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
     Ok(())
 }
 
-/// A path with nodes 0, 2, 4, 6 and 8 in contact, the last four of a window that began at the approach 1/2; node 10 closes at
-/// `watcher`.
+/// A path with nodes 0, 2, 4, 6 and 8 in contact, the last four of a window that began at the approach 1/2; node 10
+/// closes at `watcher`.
 fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun, usize), Error> {
     let far = 20.0;
     let gaps = [0.0, far, 1.0, far, 1.25, far, 1.75, far, gap_of_8, far, watcher];
@@ -162,8 +162,8 @@ fn events_behind_a_contradiction_are_taken_back() -> Result<(), Error> {
     Ok(())
 }
 
-/// Events of a window become states: at 1/2 + 1/2 and 1/2 + 3/4 two nodes touch, and each adds 1/4 to the stiffness over the
-/// cell area of 2 m².
+/// Events of a window become states: at 1/2 + 1/2 and 1/2 + 3/4 two nodes touch, and each adds 1/4 to the stiffness
+/// over the cell area of 2 m².
 #[test]
 fn events_become_states() -> Result<(), Error> {
     let mut run = test_chain::run(&[0.0, 20.0, 1.0, 20.0, 1.25])?;

@@ -9,8 +9,8 @@ use crate::updater::Left;
 use crate::updater::{ConjugateGradient, Dense, RecursiveCholesky};
 use crate::{Boussinesq, InfluenceKernel, PeriodicBoussinesq};
 
-/// The ranking takes 16 bytes for each of 15 nodes, a problem two fields, a table of 9 × 5 coefficients and a convolution, all
-/// gaps four fields and another convolution.
+/// The ranking takes 16 bytes for each of 15 nodes, a problem two fields, a table of 9 × 5 coefficients and a
+/// convolution, all gaps four fields and another convolution.
 #[test]
 fn bytes_of_the_grid_add_up() -> Result<(), Error> {
     let grid = Grid::new(5, 3, 1.0, 1.0)?;
@@ -76,7 +76,8 @@ fn earlier_contacts_need_room_of_their_own() -> Result<(), Error> {
     Ok(())
 }
 
-/// Gaps of 0, 1, 2 and 5 m at the approach δ, before any contact: a mean of 2 − δ. An overlap of 10⁻¹⁰ (5 + δ) m is rounding.
+/// Gaps of 0, 1, 2 and 5 m at the approach δ, before any contact: a mean of 2 − δ. An overlap of 10⁻¹⁰ (5 + δ) m is
+/// rounding.
 #[test]
 fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
     let mut run = test_chain::run(&[0.0, 1.0, 2.0, 5.0])?;
@@ -109,8 +110,8 @@ fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
     Ok(())
 }
 
-/// Node 0 carries 1 at the approach 4; node 2, at the gap 4 + x, carries −x/4, of which 10⁻¹⁰ and a quarter of an overlap
-/// are allowed.
+/// Node 0 carries 1 at the approach 4; node 2, at the gap 4 + x, carries −x/4, of which 10⁻¹⁰ and a quarter of an
+/// overlap are allowed.
 #[test]
 fn tension_beyond_rounding_is_found() -> Result<(), Error> {
     for (x, overlap, is_found) in [
@@ -199,8 +200,8 @@ fn errors_say_where_the_path_is() -> Result<(), Error> {
     Ok(())
 }
 
-/// A step that is taken back leaves contact and scalars as they were, or without its last nodes, and whoever solves on the contact is
-/// told of what is left.
+/// A step that is taken back leaves contact and scalars as they were, or without its last nodes, and whoever solves on
+/// the contact is told of what is left.
 #[test]
 fn steps_are_taken_back() -> Result<(), Error> {
     for (last, left) in [(0, &[0, 2][..]), (1, &[0]), (9, &[])] {

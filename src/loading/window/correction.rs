@@ -35,8 +35,9 @@ impl Correction {
     }
 }
 
-/// What the `times` of events in a window that ends after `span` may be off by besides their `errors`, if Schur complements leave out a part
-/// of a pivot. Both ends are solutions; in between the correction, of rank two, does not see all of what is left out.
+/// What the `times` of events in a window that ends after `span` may be off by besides their `errors`, if Schur
+/// complements leave out a part of a pivot. Both ends are solutions; in between the correction, of rank two, does not
+/// see all of what is left out.
 pub(in crate::loading) fn widen(
     errors: &mut [f64],
     times: impl Iterator<Item = f64>,
@@ -59,10 +60,10 @@ pub(in crate::loading) fn widen(
 /// S_2 = \tilde S - V (W^T V)^{-1} V^T
 /// ```
 ///
-/// (Nyström) acts on W as S does. `S̃ − S` is positive semidefinite, so that WᵀV should be positive
-/// definite; where rounding, or too large an error of S̃, spoils that, S̃ stays as it is. Whatever is still
-/// missing at the end is added to each gap as a cubic in time of zero value and slope at the
-/// beginning. Nodes in contact, which may yield, have pressures in the place of gaps, and overlaps in that of pressures.
+/// (Nyström) acts on W as S does. `S̃ − S` is positive semidefinite, so that WᵀV should be positive definite; where
+/// rounding, or too large an error of S̃, spoils that, S̃ stays as it is. Whatever is still missing at the end is added
+/// to each gap as a cubic in time of zero value and slope at the beginning. Nodes in contact, which may yield, have
+/// pressures in the place of gaps, and overlaps in that of pressures.
 pub(in crate::loading) fn correct(window: &Window, ends: &[AtEnd], time: f64) -> Correction {
     let mut by_courses = window.clone();
     complete(&mut by_courses, window, ends, time);
@@ -100,8 +101,8 @@ fn complete(target: &mut Window, window: &Window, ends: &[AtEnd], time: f64) {
     target.set_courses(courses.into_iter());
 }
 
-/// Updates the Schur complement of a window whose courses end as they should; false if the result is none: then the window is of no
-/// use.
+/// Updates the Schur complement of a window whose courses end as they should; false if the result is none: then the
+/// window is of no use.
 fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     let t = time;
     // −V: what the lines and S̃ lack at the end, both columns in the unit of a rate.
@@ -163,8 +164,8 @@ mod tests {
     const TIME: f64 = 2.0;
     /// Pressures and rates at the end of two nodes that have joined, and of one that has not.
     const PRESSURES: [[f64; 2]; 3] = [[2.0, 1.0], [1.0, 1.0], [0.0, 0.0]];
-    /// a, b of lines that end so under S, and the gap of the third node and its slope there: with
-    /// S p = (7, 5, 1) and S q = (4, 4, 1) it is b = S q and a = 2 b − S p in contact, and 10 − 2 · 2 + 1 = 7 and 1 − 2 beside.
+    /// a, b of lines that end so under S, and the gap of the third node and its slope there: with S p = (7, 5, 1) and S
+    /// q = (4, 4, 1) it is b = S q and a = 2 b − S p in contact, and 10 − 2 · 2 + 1 = 7 and 1 − 2 beside.
     const LINES: [[f64; 2]; 3] = [[1.0, 4.0], [3.0, 4.0], [10.0, 2.0]];
     const LAST: [f64; 2] = [7.0, -1.0];
 
@@ -284,7 +285,8 @@ mod tests {
         }
     }
 
-    /// A fifth of a tenth of the span of 2 in the middle, three quarters of that at a quarter of the way, and nothing at the ends.
+    /// A fifth of a tenth of the span of 2 in the middle, three quarters of that at a quarter of the way, and nothing
+    /// at the ends.
     #[test]
     fn times_are_most_uncertain_between_the_ends() {
         let times = [0.0, 0.5, 1.0, 2.0, 2.1];

@@ -21,13 +21,14 @@ pub(super) struct Watched {
     pub(super) hardness: f64,
     /// Gap of a node out of contact, or pressure of one in it.
     pub(super) line: GapLine,
-    /// What a pressure on it, or an overlap of it, adds to sums over all nodes: of gaps that are not closed, of plastic depths, and of
-    /// these times the hardness.
+    /// What a pressure on it, or an overlap of it, adds to sums over all nodes: of gaps that are not closed, of plastic
+    /// depths, and of these times the hardness.
     pub(super) sums: [f64; SUMS],
 }
 
 impl Watched {
-    /// Leaves the pressures of nodes out of contact unwatched that cannot come to their hardness in a window in which nodes only touch.
+    /// Leaves the pressures of nodes out of contact unwatched that cannot come to their hardness in a window in which
+    /// nodes only touch.
     pub(super) fn leave_out_pressures(watched: &mut [Self], schur: &Schur, horizon: f64) {
         let touches = watched.iter().map(|watched| watched.line.touches());
         let last = touches.filter(|time| time.is_finite()).fold(0.0, f64::max);
@@ -44,8 +45,8 @@ impl Watched {
 
 pub(super) const SUMS: usize = 3;
 
-/// What an overlap of a node in contact adds to the sums of [`Watched`], from what a gap of it adds to the same over all nodes: its own
-/// is the depth of a node that has yielded.
+/// What an overlap of a node in contact adds to the sums of [`Watched`], from what a gap of it adds to the same over
+/// all nodes: its own is the depth of a node that has yielded.
 pub(super) fn of_overlap(of_gap: [f64; SUMS], hardness: f64) -> [f64; SUMS] {
     [1.0 - of_gap[0], 1.0 - of_gap[1], hardness - of_gap[2]]
 }
@@ -102,16 +103,16 @@ impl Row {
     }
 }
 
-/// The nodes that may touch, or yield, before any other, and all that decides among them: the courses of their gaps and pressures, and
-/// the matrix M by which an event changes the courses of the others,
+/// The nodes that may touch, or yield, before any other, and all that decides among them: the courses of their gaps and
+/// pressures, and the matrix M by which an event changes the courses of the others,
 ///
 /// ```text
 /// (gaps of nodes out of contact, pressures of elastic nodes) = courses + M (pressures of the former, overlaps of the latter)
 /// ```
 ///
-/// M is symmetric, and the Schur complement S where nodes only touch. A touch is a positive pivot, a yield a negative one, in any order:
-/// M is quasi-definite. A node that touches and may yield later has a second row, that of its pressure, whose only entry is 1 in the column
-/// of its touch.
+/// M is symmetric, and the Schur complement S where nodes only touch. A touch is a positive pivot, a yield a negative
+/// one, in any order: M is quasi-definite. A node that touches and may yield later has a second row, that of its
+/// pressure, whose only entry is 1 in the column of its touch.
 ///
 /// Everything here is small and dense; it knows nothing of the grid, the updater, or the path.
 #[derive(Debug, Clone, Default)]
@@ -130,16 +131,17 @@ pub(super) struct Window {
     events: Vec<WindowEvent>,
     /// The courses of these rows when they were eliminated, less the limit.
     eliminated: Vec<Course>,
-    /// What each event adds to `eᵀ C_II⁻¹ e`, takes off the sum of closing rates, and adds to the rates of plastic sums.
+    /// What each event adds to `eᵀ C_II⁻¹ e`, takes off the sum of closing rates, and adds to the rates of plastic
+    /// sums.
     increments: Vec<Rates>,
-    /// The stiffness behind each event where all elastic nodes are watched: the sum of their rates. Where few are left of many, what
-    /// events take from it is no use.
+    /// The stiffness behind each event where all elastic nodes are watched: the sum of their rates. Where few are left
+    /// of many, what events take from it is no use.
     stiffnesses: Option<Vec<f64>>,
 }
 
 impl Window {
-    /// Opens a window at an approach on nodes and the lines of their gaps; no other node touches before the time `horizon`. The
-    /// caller fills the Schur complement and calls [`Self::begin`].
+    /// Opens a window at an approach on nodes and the lines of their gaps; no other node touches before the time
+    /// `horizon`. The caller fills the Schur complement and calls [`Self::begin`].
     pub(super) fn open(
         &mut self,
         (approach, horizon): (f64, f64),
@@ -179,8 +181,8 @@ impl Window {
     }
 
     /// Opens a window on nodes that may yield, and begins, with the matrix M of
-    /// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both) as it has been filled. `elastic` nodes are in contact. Of
-    /// nodes out of contact that have a finite hardness pressures are watched as well.
+    /// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both) as it has been filled. `elastic` nodes
+    /// are in contact. Of nodes out of contact that have a finite hardness pressures are watched as well.
     pub(super) fn begin_both(&mut self, at: (f64, f64), watched: &[Watched], elastic: usize) {
         let lines = watched.iter().map(|watched| (watched.node, watched.line));
         self.open(at, lines);
@@ -267,7 +269,8 @@ impl Window {
         }
     }
 
-    /// When a node touches or yields by the line at the beginning of the window, which may lie behind; `None` if it does not.
+    /// When a node touches or yields by the line at the beginning of the window, which may lie behind; `None` if it
+    /// does not.
     pub(super) fn own_time(&self, position: usize) -> Option<f64> {
         let GapLine { gap, closing } = self.rows[position].left().line;
         (closing > 0.0 && gap.is_finite()).then_some(gap / closing)
@@ -283,8 +286,8 @@ impl Window {
         }
     }
 
-    /// A pivot before the first event: what a pressure displaces where the node is out of contact, or minus what an overlap takes of a
-    /// pressure.
+    /// A pivot before the first event: what a pressure displaces where the node is out of contact, or minus what an
+    /// overlap takes of a pressure.
     pub(super) fn pivot(&self, position: usize) -> f64 {
         self.schur.entry(position, position)
     }
@@ -336,7 +339,8 @@ impl Window {
         &self.events
     }
 
-    /// What each event adds to `eᵀ C_II⁻¹ e`, the stiffness over the cell area, and what it takes off the sum of closing rates.
+    /// What each event adds to `eᵀ C_II⁻¹ e`, the stiffness over the cell area, and what it takes off the sum of
+    /// closing rates.
     pub(super) fn increments(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         self.increments.iter().map(|rates| [rates.unit_stiffness, rates.closing])
     }
@@ -373,8 +377,8 @@ impl Window {
         WindowFactor::of(self.schur.clone(), &positions).map(Cow::Owned)
     }
 
-    /// What the nodes of the events have come to at a time behind them, and how fast that grows: pressures of those that touched, and
-    /// overlaps of those that yielded.
+    /// What the nodes of the events have come to at a time behind them, and how fast that grows: pressures of those
+    /// that touched, and overlaps of those that yielded.
     pub(super) fn answers(&self, time: f64) -> Vec<[f64; 2]> {
         let own = self.eliminated.iter().zip(self.factor.positions()).enumerate();
         let own = own.map(|(event, (course, &row))| {
@@ -386,8 +390,8 @@ impl Window {
         answers
     }
 
-    /// Plays up to `most` events: what comes first, again and again, until the horizon. Ties go to the node of the lowest index. Returns
-    /// what ended it if that is a pivot.
+    /// Plays up to `most` events: what comes first, again and again, until the horizon. Ties go to the node of the
+    /// lowest index. Returns what ended it if that is a pivot.
     ///
     /// The first event always counts: the horizon is the bound of a node that was later, so that anything
     /// else is rounding; and so is a time before that of the last event.
@@ -422,8 +426,8 @@ impl Window {
         self.play(usize::MAX)
     }
 
-    /// When something happens next, and of the nodes that it happens to then the one of the lowest index: those that are within a tie of
-    /// it.
+    /// When something happens next, and of the nodes that it happens to then the one of the lowest index: those that
+    /// are within a tie of it.
     fn next(&self) -> Option<(usize, f64)> {
         let now = self.events.last().map_or(0.0, |event| event.time);
         let open = self.rows.iter().enumerate();
@@ -512,8 +516,8 @@ impl Window {
         self.factor.truncate(events);
     }
 
-    /// The window of some nodes to which more may happen, with the events so far eliminated, from a time on at which their gaps or
-    /// pressures are `values`. It has no horizon, and its sums are not those of all nodes.
+    /// The window of some nodes to which more may happen, with the events so far eliminated, from a time on at which
+    /// their gaps or pressures are `values`. It has no horizon, and its sums are not those of all nodes.
     pub(super) fn remaining(
         mut self,
         positions: &[usize],

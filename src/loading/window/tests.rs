@@ -121,8 +121,8 @@ fn ties_go_to_the_lowest_index_and_times_never_fall() {
     assert!(window.touched().eq([7, 9, 8]));
 }
 
-/// Node 9 seems to touch first, by less than a tie: node 8 comes first all the same, and both at times that do not fall.
-/// However slowly they close, it is their gaps that tell.
+/// Node 9 seems to touch first, by less than a tie: node 8 comes first all the same, and both at times that do not
+/// fall. However slowly they close, it is their gaps that tell.
 #[test]
 fn rounding_does_not_order_ties() {
     let fast = [[5.0, 1.0], [1.0, 1.0], [1.0 - 1e-12, 1.0]];
@@ -139,7 +139,8 @@ fn rounding_does_not_order_ties() {
     }
 }
 
-/// A pivot that is not positive names its node and when it would have touched, and ends the window. Then nothing has changed.
+/// A pivot that is not positive names its node and when it would have touched, and ends the window. Then nothing has
+/// changed.
 #[test]
 fn bad_pivots_are_named() {
     for (matrix, second, time, pivot) in [
@@ -234,8 +235,8 @@ fn kinds(window: &Window) -> Vec<(ContactEvent, usize, f64)> {
     window.events().iter().map(|event| (event.kind, event.position, event.time)).collect()
 }
 
-/// Touch at 0, yield at 3/2, touch at 7/4, yield at 13/4. With one node elastic the other sinks half as fast as the approach;
-/// with none all gaps close, and overlaps grow, as fast as that.
+/// Touch at 0, yield at 3/2, touch at 7/4, yield at 13/4. With one node elastic the other sinks half as fast as the
+/// approach; with none all gaps close, and overlaps grow, as fast as that.
 #[test]
 fn both_kinds_of_events() -> Result<(), crate::Error> {
     use ContactEvent::{Touch, Yield};
@@ -264,8 +265,8 @@ fn both_kinds_of_events() -> Result<(), crate::Error> {
         if most < 4 {
             continue;
         }
-        // Pressures are at the hardness. One has yielded by 7/4 − 3/4, and the other has only just; both overlap as fast as
-        // the approach grows.
+        // Pressures are at the hardness. One has yielded by 7/4 − 3/4, and the other has only just; both overlap as
+        // fast as the approach grows.
         let found = window.answers(3.25);
         let expected = [[0.75, 0.0], [1.0, 1.0], [0.75, 0.0], [0.0, 1.0]];
         for (found, expected) in found.iter().flatten().zip(expected.as_flattened()) {
@@ -275,8 +276,8 @@ fn both_kinds_of_events() -> Result<(), crate::Error> {
     Ok(())
 }
 
-/// Until a horizon, though the first event always counts; not beyond so many that touch; and an infinite hardness is never
-/// reached.
+/// Until a horizon, though the first event always counts; not beyond so many that touch; and an infinite hardness is
+/// never reached.
 #[test]
 fn windows_end() -> Result<(), crate::Error> {
     for (horizon, touches, events) in
@@ -297,7 +298,8 @@ fn windows_end() -> Result<(), crate::Error> {
     Ok(())
 }
 
-/// Elastic nodes at equal pressures yield in the order of their indices, and the stiffness is what is left of their rates.
+/// Elastic nodes at equal pressures yield in the order of their indices, and the stiffness is what is left of their
+/// rates.
 #[test]
 fn nodes_that_yield_at_once_are_in_order() -> Result<(), crate::Error> {
     let mut schur = Schur::default();
@@ -326,8 +328,8 @@ fn nodes_that_yield_at_once_are_in_order() -> Result<(), crate::Error> {
     Ok(())
 }
 
-/// What remains of a window is one of its own: both nodes alone at 8/5, when node 7 has yielded and node 8 has been found 1/16
-/// away from the surface. It touches that much later, and yields 3/2 after that.
+/// What remains of a window is one of its own: both nodes alone at 8/5, when node 7 has yielded and node 8 has been
+/// found 1/16 away from the surface. It touches that much later, and yields 3/2 after that.
 #[test]
 fn what_remains_may_yield() -> Result<(), crate::Error> {
     use ContactEvent::{Touch, Yield};
@@ -349,7 +351,8 @@ fn what_remains_may_yield() -> Result<(), crate::Error> {
     Ok(())
 }
 
-/// Of what is elastic when it remains, the pressure is known: 1/2 of 3/4, which takes as much approach again as 2 · 1/4.
+/// Of what is elastic when it remains, the pressure is known: 1/2 of 3/4, which takes as much approach again as 2 ·
+/// 1/4.
 #[test]
 fn what_remains_may_be_elastic() -> Result<(), crate::Error> {
     let mut window = two([0.75; 2], f64::INFINITY)?;

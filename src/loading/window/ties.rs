@@ -1,5 +1,5 @@
-//! The events of a corrected window in their final order: those that are too close to each other to be told apart get a solution of
-//! their own.
+//! The events of a corrected window in their final order: those that are too close to each other to be told apart get a
+//! solution of their own.
 
 use std::ops::Range;
 
@@ -48,8 +48,8 @@ impl Question<'_> {
     }
 }
 
-/// Plays the events of a window with its corrected matrix, and estimates their errors. `first` is what the events were in the first pass,
-/// `happened` those that its end did not contradict, and it ends after `time`.
+/// Plays the events of a window with its corrected matrix, and estimates their errors. `first` is what the events were
+/// in the first pass, `happened` those that its end did not contradict, and it ends after `time`.
 pub(in crate::loading) fn second_pass(
     correction: &Correction,
     (first, happened): (&[WindowEvent], &[WindowEvent]),
@@ -102,8 +102,8 @@ pub(in crate::loading) fn mean_change(
     changes.sum::<f64>() / events.len() as f64
 }
 
-/// Settles what is too close to be told apart in a window. `solve` answers with the gap of each node out of contact and the pressure of
-/// each in it. `None` if a solution is far from what was expected there, unless the window is certain.
+/// Settles what is too close to be told apart in a window. `solve` answers with the gap of each node out of contact and
+/// the pressure of each in it. `None` if a solution is far from what was expected there, unless the window is certain.
 pub(in crate::loading) fn settle(
     window: &Window,
     tolerances: &WindowTolerances,
@@ -164,9 +164,9 @@ impl Ties<'_> {
         Some(last)
     }
 
-    /// Whether symmetry maps the nodes of two events to each other: they had the same gap or pressure and the same rate when the window
-    /// began, they give way alike, and their times are not told apart. Before first touch all nodes close at the same rate, and what
-    /// joins first tells them apart: only ties count.
+    /// Whether symmetry maps the nodes of two events to each other: they had the same gap or pressure and the same rate
+    /// when the window began, they give way alike, and their times are not told apart. Before first touch all nodes
+    /// close at the same rate, and what joins first tells them apart: only ties count.
     fn are_images(&self, event: usize, other: usize) -> bool {
         let Settled { events, errors } = &self.settled;
         let (window, tolerances) = (self.window, self.tolerances);
@@ -199,8 +199,8 @@ impl Ties<'_> {
             })
     }
 
-    /// Gives nodes that symmetry maps to each other their mean time, and the greatest of their errors, in the order of the
-    /// nodes.
+    /// Gives nodes that symmetry maps to each other their mean time, and the greatest of their errors, in the order of
+    /// the nodes.
     fn make_orbits_equal(&mut self, range: Range<usize>) {
         let mut orbits: Vec<Vec<usize>> = Vec::new();
         for event in range.clone() {
@@ -231,8 +231,8 @@ impl Ties<'_> {
         }
     }
 
-    /// Settles a run of events by the exact gaps and pressures just before it, and returns from which event to go on; `None` if these
-    /// contradict what was expected.
+    /// Settles a run of events by the exact gaps and pressures just before it, and returns from which event to go on;
+    /// `None` if these contradict what was expected.
     fn resolve(
         &mut self,
         first: usize,
@@ -336,8 +336,8 @@ impl Ties<'_> {
         }
     }
 
-    /// The window of some nodes, all events before the one at `first` eliminated, at the time of that, when their gaps or pressures are
-    /// `values`; `None` if a pivot has the wrong sign.
+    /// The window of some nodes, all events before the one at `first` eliminated, at the time of that, when their gaps
+    /// or pressures are `values`; `None` if a pivot has the wrong sign.
     fn eliminated(
         &self,
         first: usize,

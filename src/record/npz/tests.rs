@@ -216,7 +216,8 @@ fn next_states(record: &LoadingRecord, has_factor: bool) -> Result<Vec<LoadingSt
     }
 }
 
-/// Whether states are the same within ten times what they say of their error, and to 10⁻⁶, to which a resumed path recognises itself.
+/// Whether states are the same within ten times what they say of their error, and to 10⁻⁶, to which a resumed path
+/// recognises itself.
 fn are_close(a: &LoadingState, b: &LoadingState) -> bool {
     let off = 1e-6 + 10.0 * (a.approach_error + b.approach_error);
     let close = |a: Option<f64>, b: Option<f64>| match (a, b) {
@@ -232,15 +233,17 @@ fn are_close(a: &LoadingState, b: &LoadingState) -> bool {
         && close(one.interfacial_stiffness, other.interfacial_stiffness)
 }
 
-/// Whether a change may be taken as it is. Two things follow from nothing: an estimated error that is no more than a tenth of the lengths, and
-/// a stiffness of the last state, from which the path goes on with its own. It is between bounds, which are wide for few nodes.
+/// Whether a change may be taken as it is. Two things follow from nothing: an estimated error that is no more than a
+/// tenth of the lengths, and a stiffness of the last state, from which the path goes on with its own. It is between
+/// bounds, which are wide for few nodes.
 fn is_free(name: &str, is_last: bool, is_double: bool) -> bool {
     name == "approach_error"
         || (is_last && is_double && ["contact_stiffness", "interfacial_stiffness"].contains(&name))
 }
 
-/// Every array is changed at some places, to nothing, the negative, something huge and the double. Each change is refused when the record is
-/// read; or the numbers of its states are what they were, and the path does not go on, or goes on as it would have.
+/// Every array is changed at some places, to nothing, the negative, something huge and the double. Each change is
+/// refused when the record is read; or the numbers of its states are what they were, and the path does not go on, or
+/// goes on as it would have.
 #[test]
 fn changed_numbers_are_refused_or_change_nothing() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::temp_dir().join(format!("asperity-changed-{}.npz", std::process::id()));

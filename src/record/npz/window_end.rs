@@ -55,7 +55,8 @@ struct IterationNumbers {
     sums_of: usize,
     directions: usize,
     marks: [usize; 2],
-    /// Of the proposed nodes those that were out of contact, where nodes in it were proposed as well, and the nodes that have yielded since.
+    /// Of the proposed nodes those that were out of contact, where nodes in it were proposed as well, and the nodes
+    /// that have yielded since.
     #[serde(default)]
     beside: Option<[usize; 2]>,
 }

@@ -56,7 +56,8 @@ impl Factor {
         self.panels.rows()
     }
 
-    /// Makes `nodes` and those at `places` of the contact the watched ones, and writes their Schur complement to `schur`.
+    /// Makes `nodes` and those at `places` of the contact the watched ones, and writes their Schur complement to
+    /// `schur`.
     ///
     /// Nodes that were watched before are recognised if they come first and in the same order; only
     /// the others cost a forward substitution.
@@ -157,7 +158,8 @@ impl Factor {
         }
     }
 
-    /// Removes the nodes at `positions` (ascending) from the contact, which is `contact` now, and forgets the watched ones.
+    /// Removes the nodes at `positions` (ascending) from the contact, which is `contact` now, and forgets the watched
+    /// ones.
     pub(super) fn release(
         &mut self,
         contact: &ContactSequence,

@@ -1,5 +1,5 @@
-//! How much work the parts of a factorisation are, in products of a matrix product: from it follows how many threads share
-//! them, and nothing else.
+//! How much work the parts of a factorisation are, in products of a matrix product: from it follows how many threads
+//! share them, and nothing else.
 
 /// The solution of `L F = B` for so many columns: n²/2 products each.
 pub(super) fn forward(rows: usize, columns: usize) -> usize {

@@ -68,8 +68,8 @@ fn subtract_rows<const N: usize>(a: &[f64], width: usize, y: &[[f64; N]], x: [&m
 mod tests {
     use super::*;
 
-    /// Products of small integers are exact. Parts of a chunk of 32 columns, several and none; blocks of four rows, and some
-    /// more; rows that are wider than what is wanted.
+    /// Products of small integers are exact. Parts of a chunk of 32 columns, several and none; blocks of four rows, and
+    /// some more; rows that are wider than what is wanted.
     #[test]
     fn products_are_subtracted() {
         for columns in [0, 1, 31, 32, 33, 64, 100] {

@@ -142,9 +142,9 @@ fn length<X: Deref<Target = [f64]>>(x: &[X]) -> usize {
 mod tests {
     use super::*;
 
-    /// Small triangles, panels and groups of them, at their borders; with three groups threads share the work. The factor
-    /// is that of many more rows. Its diagonal is 4, and beside it are powers of 1/2: each solution, of small integers, comes
-    /// back but for a few rounding errors.
+    /// Small triangles, panels and groups of them, at their borders; with three groups threads share the work. The
+    /// factor is that of many more rows. Its diagonal is 4, and beside it are powers of 1/2: each solution, of small
+    /// integers, comes back but for a few rounding errors.
     #[test]
     fn factors_are_solved_backwards() {
         let entry = |r: usize, c: usize| match r - c {

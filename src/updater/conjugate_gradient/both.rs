@@ -83,8 +83,8 @@ impl Both {
         place < self.outside
     }
 
-    /// Displacements of proposed nodes out of contact, and pressures of those in it, with what the residuals of the solution say of
-    /// them: pressures that took a residual r out of the contact would change either by `xᵀ r`.
+    /// Displacements of proposed nodes out of contact, and pressures of those in it, with what the residuals of the
+    /// solution say of them: pressures that took a residual r out of the contact would change either by `xᵀ r`.
     pub(super) fn improved(&self, problem: &Problem, now: &Equilibrium) -> Vec<[f64; 2]> {
         let of = |(place, local): (usize, &Local)| {
             let left = now.left_near(problem, local);
@@ -116,7 +116,8 @@ impl Both {
         Some(places)
     }
 
-    /// Pressures and overlaps of the unknown nodes that change their displacements, or pressures, by `rhs`; `None` if no numbers do.
+    /// Pressures and overlaps of the unknown nodes that change their displacements, or pressures, by `rhs`; `None` if
+    /// no numbers do.
     fn answer<const N: usize>(&self, unknown: &[usize], rhs: &[[f64; N]]) -> Option<Vec<[f64; N]>> {
         let size = unknown.len();
         if size == 0 {
@@ -151,8 +152,8 @@ impl Both {
         }
     }
 
-    /// The pressures of a field, after a change that makes displacements in contact `rhs`, as far as local solutions tell; and how far
-    /// nodes have given way, in units of a length, which grows from nothing.
+    /// The pressures of a field, after a change that makes displacements in contact `rhs`, as far as local solutions
+    /// tell; and how far nodes have given way, in units of a length, which grows from nothing.
     pub(super) fn carried(
         &self,
         problem: &Problem,
@@ -198,8 +199,8 @@ impl Both {
         (pressure, way)
     }
 
-    /// Improves what a solution says of the proposed nodes, after a change: pressures of those that joined or have not yielded, and
-    /// displacements of the others. `count` nodes of the contact were there before.
+    /// Improves what a solution says of the proposed nodes, after a change: pressures of those that joined or have not
+    /// yielded, and displacements of the others. `count` nodes of the contact were there before.
     pub(super) fn improve(
         &self,
         problem: &Problem,

@@ -103,8 +103,9 @@ impl Equilibrium {
         sums
     }
 
-    /// Scales pressures and rates of an improved solution so that their sums, load and stiffness, are right to second order: with a
-    /// residual r left those of this one lack `y₂ᵀ r`. What improved single pressures without the answer of others is no part of it.
+    /// Scales pressures and rates of an improved solution so that their sums, load and stiffness, are right to second
+    /// order: with a residual r left those of this one lack `y₂ᵀ r`. What improved single pressures without the answer
+    /// of others is no part of it.
     pub(super) fn scale(
         &self,
         problem: &Problem,
@@ -150,8 +151,8 @@ mod tests {
         assert_eq!(field([0.0; 2], &[], 0.0).open(), 1.0);
     }
 
-    /// Pressures, displacements and what may be spoilt of them are lines, forwards and backwards; displacements that are
-    /// not known at either end of the sum are not known there.
+    /// Pressures, displacements and what may be spoilt of them are lines, forwards and backwards; displacements that
+    /// are not known at either end of the sum are not known there.
     #[test]
     fn another_approach_is_on_a_line() {
         let known = Equilibrium {
@@ -180,8 +181,8 @@ mod tests {
         }
     }
 
-    /// Nodes 0 and 2 of four in a row are solved at the approach 3, and node 1 not: what is left is 3 − 0 − 2.5, 3 − 1 − 1.5 and
-    /// 3 − 2 − 1.125, and of rates 1/2, 3/4 and 0.
+    /// Nodes 0 and 2 of four in a row are solved at the approach 3, and node 1 not: what is left is 3 − 0 − 2.5, 3 − 1
+    /// − 1.5 and 3 − 2 − 1.125, and of rates 1/2, 3/4 and 0.
     fn solved() -> Result<(Problem, ContactSequence, Equilibrium), crate::Error> {
         let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 9.0])?;
         let contact = ContactSequence::with_order(problem.grid(), [0, 2, 1])?;

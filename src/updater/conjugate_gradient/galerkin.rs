@@ -8,8 +8,8 @@ use super::tuning::{FAR, POINTS};
 use crate::kernel::KernelTable;
 use crate::{Boundary, Grid, Problem, parallel};
 
-/// What a watched node does to pressures: of one out of contact unit pressure and the answer of the contact near it, `e_j − x_j`; of
-/// one in contact what its overlap takes off that contact, `−x_q`.
+/// What a watched node does to pressures: of one out of contact unit pressure and the answer of the contact near it,
+/// `e_j − x_j`; of one in contact what its overlap takes off that contact, `−x_q`.
 struct Source {
     /// (place in the table, pressure) of all nodes, by the first.
     near: Vec<(usize, f64)>,
@@ -30,7 +30,8 @@ struct Source {
 /// differs by the square of the error of x, and is never greater. The lower triangle is written.
 ///
 /// With nodes q in contact, of which `x_q = C_KK⁻¹ e_q`, it is the same of the matrix M of
-/// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both): with the sources $`s_j = e_j - x_j`$ and $`s_q = -x_q`$
+/// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both): with the sources $`s_j = e_j - x_j`$ and
+/// $`s_q = -x_q`$
 ///
 /// ```math
 /// \tilde M_{ij} = s_i^T C\, s_j + [i \text{ in contact}]\, s_{j,i} + [j \text{ in contact}]\, s_{i,j}
@@ -50,8 +51,8 @@ pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
     });
 }
 
-/// Displacements of places under one source. Where nodes beside each other are watched, as on a plateau, the places near one of them are near
-/// most of the others too.
+/// Displacements of places under one source. Where nodes beside each other are watched, as on a plateau, the places
+/// near one of them are near most of the others too.
 type Displacements = HashMap<usize, f64, BuildHasherDefault<OfPlace>>;
 
 /// Spreads places, which are no one's choice.
@@ -73,8 +74,8 @@ impl Hasher for OfPlace {
     }
 }
 
-/// Products, and look-ups that take as long, of a column: those of a source of `nodes` with itself, and with its neighbours among
-/// the `size` sources, of which each has some 64.
+/// Products, and look-ups that take as long, of a column: those of a source of `nodes` with itself, and with its
+/// neighbours among the `size` sources, of which each has some 64.
 fn products(nodes: usize, size: usize) -> usize {
     nodes * (nodes + size * 64)
 }
@@ -155,8 +156,8 @@ impl Source {
                 .map(|here| here.1 * displacement(table, here.0, &other.far))
                 .sum();
         }
-        // The answer of the contact near a watched node takes its displacement away there. What a node in contact displaces there is
-        // nothing but its own overlap, which goes with the last term.
+        // The answer of the contact near a watched node takes its displacement away there. What a node in contact
+        // displaces there is nothing but its own overlap, which goes with the last term.
         let mut answering = other.near.iter().peekable();
         let mut work = if self.is_in_contact { other.at(self.own) } else { 0.0 };
         for &(place, pressure) in &self.near {

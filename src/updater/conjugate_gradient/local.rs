@@ -8,9 +8,9 @@ use crate::krylov::single::solve_in_place;
 use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
 
-/// `x = C_KK⁻¹ C_Kj` on the contact nodes K near a watched node j: what pressure on j, and none but
-/// that of K to answer it, takes off K. Of a node j in contact, which is one of K, it is `x = C_KK⁻¹ e_j`: what a gap of j adds
-/// to pressures.
+/// `x = C_KK⁻¹ C_Kj` on the contact nodes K near a watched node j: what pressure on j, and none but that of K to answer
+/// it, takes off K. Of a node j in contact, which is one of K, it is `x = C_KK⁻¹ e_j`: what a gap of j adds to
+/// pressures.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Local {
     pub(super) node: usize,
@@ -214,8 +214,9 @@ mod tests {
         Ok(())
     }
 
-    /// Two rows of 80 have 159 candidates each way, fewer than are looked at. Of the 101 × 101 nodes of a free grid within 50 cells,
-    /// those within 32 are; where the grid repeats within 25, all of them, and half of them beyond a circle of that radius.
+    /// Two rows of 80 have 159 candidates each way, fewer than are looked at. Of the 101 × 101 nodes of a free grid
+    /// within 50 cells, those within 32 are; where the grid repeats within 25, all of them, and half of them beyond a
+    /// circle of that radius.
     #[test]
     fn nodes_far_away_are_out_of_reach() -> Result<(), Error> {
         for dx in [1.0, 2.0, 1e-3] {
@@ -238,7 +239,8 @@ mod tests {
         Ok(())
     }
 
-    /// On cells sixteen times as long as wide candidates lie within an ellipse, so many times as long in cells across as along.
+    /// On cells sixteen times as long as wide candidates lie within an ellipse, so many times as long in cells across
+    /// as along.
     #[test]
     fn as_many_nodes_are_in_reach_on_long_cells() -> Result<(), Error> {
         let grid = Grid::new(20, 300, 16.0, 1.0)?;

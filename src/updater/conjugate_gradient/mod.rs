@@ -37,20 +37,20 @@ use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
 /// approach. It starts from the last one, and from what nodes that joined did to the contact near them. An exact
 /// [Schur complement](LinearUpdater::watch) takes a solution for each of its nodes.
 ///
-/// A path does not need that: it takes Schur complements that are nearly exact, and corrects them by what the
-/// next solution shows (see [`loading`](crate::loading)). Inside a window a Schur complement acts on what has changed since the
-/// window began only, and there the contact near a node answers for nearly all of it. With the local solutions
-/// `x_j = C_KK⁻¹ C_Kj` on the 144 nearest contact nodes K of each watched node j,
+/// A path does not need that: it takes Schur complements that are nearly exact, and corrects them by what the next
+/// solution shows (see [`loading`](crate::loading)). Inside a window a Schur complement acts on what has changed since
+/// the window began only, and there the contact near a node answers for nearly all of it. With the local solutions `x_j
+/// = C_KK⁻¹ C_Kj` on the 144 nearest contact nodes K of each watched node j,
 ///
 /// ```math
 /// \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
 /// ```
 ///
-/// exceeds S by the square of the error of x. With a hardness nodes q in contact are watched too, with `x_q = C_KK⁻¹ e_q`: what a gap
-/// of q adds to the pressures near it.
+/// exceeds S by the square of the error of x. With a hardness nodes q in contact are watched too, with `x_q = C_KK⁻¹
+/// e_q`: what a gap of q adds to the pressures near it.
 ///
-/// As an updater of nodes that yield ([`watch_both`](LinearUpdater::watch_both)) it takes a solution for each node too; a path does with
-/// local ones there as well.
+/// As an updater of nodes that yield ([`watch_both`](LinearUpdater::watch_both)) it takes a solution for each node too;
+/// a path does with local ones there as well.
 ///
 /// Cells of a periodic half-space may be [`MAX_ASPECT`](Self::MAX_ASPECT) times as long as wide: on longer ones
 /// a path is an [`Error::OutOfRange`], but a solution on a known contact is not.
@@ -69,8 +69,8 @@ impl Default for ConjugateGradient {
 }
 
 impl ConjugateGradient {
-    /// Greatest ratio of the sides of a periodic cell on a path. Long waves along longer cells are so soft that the nearest
-    /// nodes do not say enough of a distant one: errors exceed their estimates, and events change places.
+    /// Greatest ratio of the sides of a periodic cell on a path. Long waves along longer cells are so soft that the
+    /// nearest nodes do not say enough of a distant one: errors exceed their estimates, and events change places.
     pub const MAX_ASPECT: f64 = 10.0;
 
     /// No node in contact, and a tolerance of 10⁻¹⁰.

@@ -15,9 +15,9 @@ use crate::{Error, Problem};
 /// Sums of the gaps out of contact, of plastic depths, and of these times the hardness.
 pub(super) const SUMS: usize = 3;
 
-/// `C_II⁻¹ b` on the contact I for each right-hand side b: the row sums of the nodes that have not yielded, the displacement under a
-/// pressure of 1 on those that have, and the one under their hardness. C is symmetric, so that bᵀp = (C_II⁻¹ b)ᵀ C_II p: the sums
-/// follow from the displacements on the contact.
+/// `C_II⁻¹ b` on the contact I for each right-hand side b: the row sums of the nodes that have not yielded, the
+/// displacement under a pressure of 1 on those that have, and the one under their hardness. C is symmetric, so that bᵀp
+/// = (C_II⁻¹ b)ᵀ C_II p: the sums follow from the displacements on the contact.
 #[derive(Debug, Clone, Default)]
 pub(super) struct PlasticSums {
     fields: [Field; SUMS],
@@ -111,8 +111,8 @@ impl PlasticSums {
         Ok(())
     }
 
-    /// What a pressure on each proposed node out of contact, or a gap of one in it, adds to the sums. `rates` are those at which gaps
-    /// close and pressures grow: where all row sums are the same they explain these.
+    /// What a pressure on each proposed node out of contact, or a gap of one in it, adds to the sums. `rates` are those
+    /// at which gaps close and pressures grow: where all row sums are the same they explain these.
     pub(super) fn of(
         &self,
         problem: &Problem,

@@ -30,8 +30,8 @@ pub(super) struct Improvement {
 }
 
 impl Proposed {
-    /// Proposes nodes beside the contact of `count` nodes that a solver has chosen. What the contact leaves of their row sums
-    /// is `left`.
+    /// Proposes nodes beside the contact of `count` nodes that a solver has chosen. What the contact leaves of their
+    /// row sums is `left`.
     pub(super) fn new(
         problem: &Problem,
         (neighbourhood, solver): (&Neighbourhood, &Solver),
@@ -73,8 +73,8 @@ impl Proposed {
         self.locals.iter().map(|local| (&local.contact[..], &local.weights[..]))
     }
 
-    /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were watched add to it, and returns whether all nodes that
-    /// joined were watched.
+    /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were watched add to it, and returns whether all nodes
+    /// that joined were watched.
     pub(super) fn carry_row_sums(&self, contact: &ContactSequence, pressure: &mut [f64]) -> bool {
         let joined = contact.order().get(self.count..).unwrap_or_default();
         if joined.is_empty() {
@@ -89,8 +89,8 @@ impl Proposed {
         true
     }
 
-    /// Adds pressures on nodes that joined which have displacements `left` yet to be caused, and the answer of the contact near
-    /// them. Returns the sum of the pressures on the nodes that joined.
+    /// Adds pressures on nodes that joined which have displacements `left` yet to be caused, and the answer of the
+    /// contact near them. Returns the sum of the pressures on the nodes that joined.
     fn spread(&self, factor: &WindowFactor, mut left: Vec<[f64; 1]>, pressure: &mut [f64]) -> f64 {
         factor.solve_both(&mut left);
         let mut sum = 0.0;
@@ -179,8 +179,8 @@ impl Proposed {
         WindowFactor::of(self.complement.clone(), &places).ok()
     }
 
-    /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them; and the sum of
-    /// the pressures on these nodes.
+    /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them; and the sum
+    /// of the pressures on these nodes.
     pub(super) fn carried(
         &self,
         field: &Field,

@@ -106,7 +106,8 @@ mod tests {
     use crate::test_chain;
     use crate::updater::conjugate_gradient::local::Neighbourhood;
 
-    /// Row sums in a row of four are 5, 6, 6 and 5. Of node 1 an answer to two nodes takes 1/4 each of what is left there.
+    /// Row sums in a row of four are 5, 6, 6 and 5. Of node 1 an answer to two nodes takes 1/4 each of what is left
+    /// there.
     #[test]
     fn what_is_left_of_row_sums() -> Result<(), Error> {
         let problem = test_chain::problem(&[0.0; 4])?;
@@ -124,8 +125,9 @@ mod tests {
         Ok(())
     }
 
-    /// With one of 51 nodes new that was watched, what is known goes on to serve; with one of 50 it does not, nor with 50 or fewer out of
-    /// contact, nor with a node that was not watched. What is left of row sums is then nothing on the contact.
+    /// With one of 51 nodes new that was watched, what is known goes on to serve; with one of 50 it does not, nor with
+    /// 50 or fewer out of contact, nor with a node that was not watched. What is left of row sums is then nothing on
+    /// the contact.
     #[test]
     fn row_sums_are_solved_for_when_they_are_stale() -> Result<(), Error> {
         for (before, joined, open, is_solved) in [

@@ -36,7 +36,8 @@ pub(super) struct Solutions {
     directions: Directions,
     /// The nodes of that contact.
     solved: Vec<usize>,
-    /// The proposed nodes on a path on which nodes yield, what has happened to them since, and what sums answer to them.
+    /// The proposed nodes on a path on which nodes yield, what has happened to them since, and what sums answer to
+    /// them.
     both: Option<Both>,
     passage: Option<Passage>,
     plastic_sums: PlasticSums,
@@ -105,8 +106,8 @@ impl Solutions {
         self.now.count
     }
 
-    /// Proposes nodes out of contact: returns their Schur complement, and improves the displacements that the present solution and
-    /// its rate cause there.
+    /// Proposes nodes out of contact: returns their Schur complement, and improves the displacements that the present
+    /// solution and its rate cause there.
     pub(super) fn propose(
         &mut self,
         criteria: Criteria,
@@ -228,7 +229,8 @@ impl Solutions {
         Ok(solved)
     }
 
-    /// Solves exactly with the first `count` nodes in contact. The solution that the path goes on with is left as it is.
+    /// Solves exactly with the first `count` nodes in contact. The solution that the path goes on with is left as it
+    /// is.
     pub(super) fn solve_apart(
         &mut self,
         criteria: Criteria,
@@ -284,8 +286,8 @@ impl Solutions {
         self.solver.solve(&equation, start, Cow::Owned(nothing), &mut Directions::default())
     }
 
-    /// Solves with the first `count` nodes in contact for rate and pressure, in this order: the directions of the one serve the
-    /// other, and are returned. The rate stays empty if gaps are the aim.
+    /// Solves with the first `count` nodes in contact for rate and pressure, in this order: the directions of the one
+    /// serve the other, and are returned. The rate stays empty if gaps are the aim.
     fn solve_from(
         &mut self,
         criteria: Criteria,

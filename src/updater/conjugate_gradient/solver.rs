@@ -94,7 +94,8 @@ impl Solver {
         Ok(())
     }
 
-    /// A field with other pressures, on any nodes; what the change displaces comes to displacements that are known, in single precision.
+    /// A field with other pressures, on any nodes; what the change displaces comes to displacements that are known, in
+    /// single precision.
     pub(super) fn moved(&mut self, field: &Field, pressure: Vec<f64>) -> Result<Field, Error> {
         if !field.is_known() {
             return Ok(Field::of(pressure));

@@ -4,8 +4,8 @@ use crate::updater::test_altered::Altered;
 use crate::updater::{Dense, Left, check};
 use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral};
 
-/// 480 bytes for each of 240 nodes, and 1000 for each one in contact: as iterations on any grid, and as an updater on that of the
-/// problem once it is known.
+/// 480 bytes for each of 240 nodes, and 1000 for each one in contact: as iterations on any grid, and as an updater on
+/// that of the problem once it is known.
 #[test]
 fn bytes_are_in_proportion_to_the_grid() -> Result<(), Error> {
     let mut updater = ConjugateGradient::new();
@@ -41,8 +41,8 @@ fn tolerances_lie_between_0_and_1() {
     }
 }
 
-/// Whatever span, approach or error is asked for, in whatever order: an error, or pressures that are finite; and after it a question
-/// that makes sense has its answer.
+/// Whatever span, approach or error is asked for, in whatever order: an error, or pressures that are finite; and after
+/// it a question that makes sense has its answer.
 #[test]
 fn senseless_numbers_are_survived() -> Result<(), Error> {
     let problem = problem()?;
@@ -111,9 +111,9 @@ fn dense(
     Ok((solution, displacement))
 }
 
-/// A window of a path: 60 nodes in contact are solved, ten proposed, six of them join and are solved again. Then other parts of the
-/// contact are asked for, inside the window and before it, displacements alone and solutions as exact as they go; and the whole
-/// once more. All are those of a dense solution, whatever was known before.
+/// A window of a path: 60 nodes in contact are solved, ten proposed, six of them join and are solved again. Then other
+/// parts of the contact are asked for, inside the window and before it, displacements alone and solutions as exact as
+/// they go; and the whole once more. All are those of a dense solution, whatever was known before.
 #[test]
 fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
     let problem = problem()?;
@@ -154,8 +154,8 @@ fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
     Ok(())
 }
 
-/// Schur complements are exact to the tolerance, on a kernel of free and of periodic boundaries, and after nodes have been taken back:
-/// everything that is asked of an updater.
+/// Schur complements are exact to the tolerance, on a kernel of free and of periodic boundaries, and after nodes have
+/// been taken back: everything that is asked of an updater.
 #[test]
 fn as_an_updater_it_is_exact() -> Result<(), Error> {
     let grid = Grid::new(14, 12, 1.0, 1.5)?;

@@ -1,5 +1,5 @@
-//! Coated and thin bodies: free kernels beside periodic ones on padded grids and beside a quadrature, the iterations that layers take,
-//! and the picture of the page on coats.
+//! Coated and thin bodies: free kernels beside periodic ones on padded grids and beside a quadrature, the iterations
+//! that layers take, and the picture of the page on coats.
 //!
 //! ```text
 //! cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md
@@ -235,7 +235,8 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
     Ok(())
 }
 
-/// A load under which about this part of the nodes is in contact. Where nodes may leave, not every number of them has a load.
+/// A load under which about this part of the nodes is in contact. Where nodes may leave, not every number of them has a
+/// load.
 fn load_at(solver: &mut FixedLoadSolver, fraction: f64) -> Result<f64, Error> {
     let mut solution = solver.solve_target(ContactTarget::MeanGap(1.0))?;
     for _ in 0..20 {

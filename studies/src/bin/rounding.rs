@@ -181,7 +181,8 @@ fn draw(found: &[Vec<Residuals>; 3], folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Condition of the whole matrix, and the worst of the certificates of a path to full contact: least pressure, gap in contact.
+/// Condition of the whole matrix, and the worst of the certificates of a path to full contact: least pressure, gap in
+/// contact.
 type Residuals = [f64; 3];
 
 fn residuals(grid: &Grid, kernel: &dyn InfluenceKernel) -> Result<Residuals, asperity::Error> {

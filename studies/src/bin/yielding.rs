@@ -1,4 +1,5 @@
-//! Contact with a hardness: the path of metals beside the elastic one, a sphere, and tamaas' solver with a limit of pressure.
+//! Contact with a hardness: the path of metals beside the elastic one, a sphere, and tamaas' solver with a limit of
+//! pressure.
 //!
 //! ```text
 //! cargo run --release -p asperity-studies --bin yielding -- --report docs/validation.md
@@ -140,8 +141,8 @@ fn states(path: LoadingSolver) -> Result<Vec<LoadingState>, Error> {
     path.collect()
 }
 
-/// A rigid sphere of R = 1 on E* = 1 with H = 0.1: first yield at `δ = R (πH/2E*)²`, where Hertz' greatest pressure is H, under
-/// `W = π³R²H³/6E*²`; and loads beyond, from 800 rings of exact influence, extrapolated.
+/// A rigid sphere of R = 1 on E* = 1 with H = 0.1: first yield at `δ = R (πH/2E*)²`, where Hertz' greatest pressure is
+/// H, under `W = π³R²H³/6E*²`; and loads beyond, from 800 rings of exact influence, extrapolated.
 fn sphere(text: &mut String) -> Result<(), Error> {
     let hardness = 0.1;
     let first = (std::f64::consts::FRAC_PI_2 * hardness).powi(2);

@@ -1,6 +1,7 @@
 //! Alicona, `.al3d`: the depth image.
 //!
-//! Sources: Gwyddion's `alicona.c`, Bio-Formats' `AliconaReader`, SurfaceTopography's `AL3D.py`; a file of an instrument.
+//! Sources: Gwyddion's `alicona.c`, Bio-Formats' `AliconaReader`, SurfaceTopography's `AL3D.py`; a file of an
+//! instrument.
 //!
 //! A magic string, then tags of 52 bytes (key, value, CR LF), the second of which says how many follow. The depth
 //! image lies where a tag says: rows of float32, each padded to a multiple of eight bytes, in metres. A node is

@@ -33,8 +33,8 @@ pub(super) fn incomplete(error: ZipError) -> Fault {
 /// How many times longer than the whole archive a member of an instrument's file may be.
 ///
 /// Measured heights hardly shrink to a hundredth; even an image with a few grey levels does not to 1/256. Deflate could
-/// reach 1/1032, which is what archives are made of that only want to fill a memory. Heights of 16 bits take four times as
-/// much again as double numbers.
+/// reach 1/1032, which is what archives are made of that only want to fill a memory. Heights of 16 bits take four times
+/// as much again as double numbers.
 pub(super) const MAX_GROWTH: usize = 256;
 
 /// The member of an archive whose path is, or ends with, this name; anything may stand before the archive.

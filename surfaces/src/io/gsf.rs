@@ -47,15 +47,15 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     }])
 }
 
-/// Writes a field on its grid as a Gwyddion Simple Field, which holds seven digits of each value; NaN stays NaN. The unit
-/// is that of the values: "m" for heights and gaps, "Pa" for pressures.
+/// Writes a field on its grid as a Gwyddion Simple Field, which holds seven digits of each value; NaN stays NaN. The
+/// unit is that of the values: "m" for heights and gaps, "Pa" for pressures.
 ///
 /// An existing file is replaced, once the new one is whole.
 ///
 /// # Errors
 ///
-/// [`Error::GridMismatch`] if the grid has another shape, [`Error::OutOfRange`] for a unit that does not fit into a line, and
-/// [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
+/// [`Error::GridMismatch`] if the grid has another shape, [`Error::OutOfRange`] for a unit that does not fit into a
+/// line, and [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
 pub fn write_gsf(
     path: impl AsRef<Path>,
     grid: &Grid,

@@ -2,9 +2,10 @@
 //!
 //! Sources: WaveMetrics' technical note 003, SurfaceTopography's `IBW.py`; a file of an instrument and one of Gwyddion.
 //!
-//! Version 5 has a header of 64 bytes, which gives the lengths of what follows the numbers, and one of 320 bytes with type,
-//! shape, steps and units of the wave. Layers, the third dimension, are maps, whose names are labels of that dimension. The unit of
-//! the wave is the metre even if some layers are phases: these are known by their names. The first row is the lowest.
+//! Version 5 has a header of 64 bytes, which gives the lengths of what follows the numbers, and one of 320 bytes with
+//! type, shape, steps and units of the wave. Layers, the third dimension, are maps, whose names are labels of that
+//! dimension. The unit of the wave is the metre even if some layers are phases: these are known by their names. The
+//! first row is the lowest.
 
 use super::bytes::{Bytes, Order, latin1, shape};
 use super::fault::Fault;

@@ -1,10 +1,10 @@
 //! Zygo's MetroPro, `.dat`: the heights of an interferometer.
 //!
-//! Sources: Zygo's MetroPro reference guide as quoted by several readers, SurfaceTopography's `MetroPro.py`, prysm's `io.py`; a
-//! file of an instrument.
+//! Sources: Zygo's MetroPro reference guide as quoted by several readers, SurfaceTopography's `MetroPro.py`, prysm's
+//! `io.py`; a file of an instrument.
 //!
-//! A header, most significant byte first, then intensities, which are not read, then heights in parts of a wavelength: an
-//! integer is `S·O·λ/R`, with the scale S of the interferometer, the obliquity O, and the resolution R.
+//! A header, most significant byte first, then intensities, which are not read, then heights in parts of a wavelength:
+//! an integer is `S·O·λ/R`, with the scale S of the interferometer, the obliquity O, and the resolution R.
 
 use super::bytes::{Bytes, Order, shape};
 use super::fault::Fault;

@@ -1,8 +1,9 @@
 //! Files of heights and other fields.
 //!
-//! [`read_surface`] reads what instruments write, from files, and [`ReadOptions::read_bytes`] from bytes. [`ReadOptions`] says what a file leaves open (its side, its unit,
-//! which of several maps), and [`MeasuredSurface`] is what was found. [`write_npy`], [`write_gsf`], [`write_x3p`] and
-//! [`write_vti`] pass fields on, and [`write_whole`] takes care of files that a program writes itself.
+//! [`read_surface`] reads what instruments write, from files, and [`ReadOptions::read_bytes`] from bytes.
+//! [`ReadOptions`] says what a file leaves open (its side, its unit, which of several maps), and [`MeasuredSurface`] is
+//! what was found. [`write_npy`], [`write_gsf`], [`write_x3p`] and [`write_vti`] pass fields on, and [`write_whole`]
+//! takes care of files that a program writes itself.
 //!
 //! | format | extension | read | written |
 //! |---|---|---|---|
@@ -28,8 +29,8 @@
 //! # Which index is x
 //!
 //! Everywhere in this crate x is the first index, `[(ix, iy)]`. In all formats but `.npy` the rows of the file are
-//! those of an image: row `iy`, and within it column `ix`. Rows are turned round only where the file has them from below
-//! (Nanoscope, Igor, Nanosurf, Wyko):
+//! those of an image: row `iy`, and within it column `ix`. Rows are turned round only where the file has them from
+//! below (Nanoscope, Igor, Nanosurf, Wyko):
 //!
 //! ```text
 //!   the file (an image)               the matrix                on the half-space
@@ -41,24 +42,25 @@
 //! ```
 //!
 //! An array in a `.npy` file is taken as it is: `array[ix, iy]`. An image in NumPy, `image[row, column]`, has to be
-//! transposed before it is saved. Formats differ in whether their first row is the top or the bottom of the surface: maps
-//! may therefore look mirrored beside another program, which changes no result of an isotropic half-space.
+//! transposed before it is saved. Formats differ in whether their first row is the top or the bottom of the surface:
+//! maps may therefore look mirrored beside another program, which changes no result of an isotropic half-space.
 //!
 //! # Text
 //!
-//! Numbers may be parted by blanks, tabs, `;` or commas, with decimal points or commas. Empty cells, `NaN`, `BAD`, `***` and
-//! the like are missing. The header that Gwyddion writes gives sides, units and name; without one, the options have to.
+//! Numbers may be parted by blanks, tabs, `;` or commas, with decimal points or commas. Empty cells, `NaN`, `BAD`,
+//! `***` and the like are missing. The header that Gwyddion writes gives sides, units and name; without one, the
+//! options have to.
 //!
-//! A list has a point x, y, z in each row, in any order. The points have to lie on a regular grid, from which some may be
-//! absent: they are missing. A list is known by names of its columns, `x y z`, perhaps with units, `x (µm)`, by the extension
-//! `.xyz`, or by coordinates that are those of most of a grid. Positions in the first row or column of a matrix are known by even
-//! steps. Where numbers can be read in several ways, [`TextLayout`] says which is meant; [`MeasuredSurface::understood`] tells
-//! how a text was read.
+//! A list has a point x, y, z in each row, in any order. The points have to lie on a regular grid, from which some may
+//! be absent: they are missing. A list is known by names of its columns, `x y z`, perhaps with units, `x (µm)`, by the
+//! extension `.xyz`, or by coordinates that are those of most of a grid. Positions in the first row or column of a
+//! matrix are known by even steps. Where numbers can be read in several ways, [`TextLayout`] says which is meant;
+//! [`MeasuredSurface::understood`] tells how a text was read.
 //!
 //! # What a file may ask for
 //!
-//! Sizes are compared with the length of the file before memory is taken. A member of an archive (X3P) may be at most 256
-//! times as long as the archive, and a list of points needs a sixteenth of the nodes of its grid.
+//! Sizes are compared with the length of the file before memory is taken. A member of an archive (X3P) may be at most
+//! 256 times as long as the archive, and a list of points needs a sixteenth of the nodes of its grid.
 
 #[macro_use]
 mod fault;

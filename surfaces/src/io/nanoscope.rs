@@ -2,9 +2,10 @@
 //!
 //! Sources: SurfaceTopography's `DI.py`, Gwyddion's `nanoscope.c`, pySPM's `Bruker.py`; two files of instruments.
 //!
-//! A header of lines `\key: value` ends with `\*File list end`; sections begin with `\*`. One section for each image says where
-//! its integers lie, and their scale: the whole range of integers is so many volts, and a line in another section says how many
-//! nanometres a volt is, `\@Sens. Zscan: V 13.2283 nm/V`. The first row of an image is its lowest.
+//! A header of lines `\key: value` ends with `\*File list end`; sections begin with `\*`. One section for each image
+//! says where its integers lie, and their scale: the whole range of integers is so many volts, and a line in another
+//! section says how many nanometres a volt is, `\@Sens. Zscan: V 13.2283 nm/V`. The first row of an image is its
+//! lowest.
 
 use super::bytes::{Bytes, find, shape};
 use super::fault::Fault;

@@ -2,8 +2,9 @@
 //!
 //! Sources: SurfaceTopography's `EZD.py`, Gwyddion's `ezdfile.c`, NSFopen; a file of an instrument.
 //!
-//! A header of sections `[DataSet-0:1]` with lines `key=value` ends with `#!`. Groups of channels are listed in the section
-//! `DataSet`; their integers follow in the same order, each image from its lowest row on. `Dim2Range` is what all integers of that length span, from `Dim2Min` on.
+//! A header of sections `[DataSet-0:1]` with lines `key=value` ends with `#!`. Groups of channels are listed in the
+//! section `DataSet`; their integers follow in the same order, each image from its lowest row on. `Dim2Range` is what
+//! all integers of that length span, from `Dim2Min` on.
 
 use super::bytes::{Bytes, Order, find, shape};
 use super::fault::Fault;

@@ -2,8 +2,8 @@
 //!
 //! Sources: SurfaceTopography's `OPD.py`, Gwyddion's `wykofile.c`, surfalize's `opd.py`; a file of an instrument.
 //!
-//! A directory of names, types and lengths, then the blocks in its order. Heights lie column after column, each from below. They
-//! are in waves of light, floating-point or in integers of `1/Mult`.
+//! A directory of names, types and lengths, then the blocks in its order. Heights lie column after column, each from
+//! below. They are in waves of light, floating-point or in integers of `1/Mult`.
 
 use std::collections::HashMap;
 

@@ -2,9 +2,9 @@
 //!
 //! Sources: SurfaceTopography's `OPDx.py`, Gwyddion's `dektakvca.c`; a file of an instrument, which holds a profile.
 //!
-//! A tree of named items: a length and a name, a byte for the type, and what that asks for. Maps are containers in `2D_Data`,
-//! each with its numbers (`Matrix`, float32), their scale (`DataScale`), and points and extents of two dimensions, the first
-//! of which is y.
+//! A tree of named items: a length and a name, a byte for the type, and what that asks for. Maps are containers in
+//! `2D_Data`, each with its numbers (`Matrix`, float32), their scale (`DataScale`), and points and extents of two
+//! dimensions, the first of which is y.
 
 use super::bytes::{Bytes, latin1, shape};
 use super::fault::Fault;

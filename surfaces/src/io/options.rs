@@ -17,8 +17,9 @@ use crate::{Error, FileError};
 
 /// Reads the heights in a file, in any of the [formats](super) that this crate knows.
 ///
-/// Heights and cell come in metres; missing nodes are NaN. What the file leaves open has to be given in [`ReadOptions`]; of
-/// a NumPy array, which never has a unit, heights are taken to be in metres, and [`MeasuredSurface::notes`] says so.
+/// Heights and cell come in metres; missing nodes are NaN. What the file leaves open has to be given in
+/// [`ReadOptions`]; of a NumPy array, which never has a unit, heights are taken to be in metres, and
+/// [`MeasuredSurface::notes`] says so.
 ///
 /// # Errors
 ///
@@ -123,7 +124,8 @@ impl ReadOptions {
         self
     }
 
-    /// Takes a NumPy array as an image, `[row, column]`: its first index is y. The rows of all other formats are y anyway.
+    /// Takes a NumPy array as an image, `[row, column]`: its first index is y. The rows of all other formats are y
+    /// anyway.
     pub fn rows_are_y(mut self) -> Self {
         self.rows_are_y = true;
         self
@@ -135,9 +137,11 @@ impl ReadOptions {
     ///
     /// # Errors
     ///
-    /// [`FileError::Io`](crate::FileError::Io) if the file cannot be read; [`FileError::UnknownFormat`](crate::FileError::UnknownFormat); [`FileError::BadFile`](crate::FileError::BadFile) for a defect, with
-    /// its place; [`Error::EmptyGrid`] and [`Error::GridTooLarge`]; [`FileError::NoUnit`](crate::FileError::NoUnit) where the unit is
-    /// missing or no length; [`FileError::WhichChannel`](crate::FileError::WhichChannel) where there are several maps or none of that name;
+    /// [`FileError::Io`](crate::FileError::Io) if the file cannot be read;
+    /// [`FileError::UnknownFormat`](crate::FileError::UnknownFormat); [`FileError::BadFile`](crate::FileError::BadFile)
+    /// for a defect, with its place; [`Error::EmptyGrid`] and [`Error::GridTooLarge`];
+    /// [`FileError::NoUnit`](crate::FileError::NoUnit) where the unit is missing or no length;
+    /// [`FileError::WhichChannel`](crate::FileError::WhichChannel) where there are several maps or none of that name;
     /// [`Error::NotPositive`] for a side that is not.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
         let path = path.as_ref();

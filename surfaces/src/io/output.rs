@@ -2,8 +2,8 @@
 
 use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
 
-/// An output that keeps quiet once it has failed, and goes on as if all was written: an archive that is dropped unfinished
-/// would try to end itself, and complain on stderr. The failure is told once more at the end.
+/// An output that keeps quiet once it has failed, and goes on as if all was written: an archive that is dropped
+/// unfinished would try to end itself, and complain on stderr. The failure is told once more at the end.
 pub(super) struct Output<W> {
     inner: W,
     failure: Option<ErrorKind>,

@@ -2,8 +2,8 @@
 //!
 //! Sources: SurfaceTopography's `PLU.py`, Gwyddion's `sensofar.c`, surfalize's `plu.py`; a file of an instrument.
 //!
-//! Date and comment, the calibration with the size of a pixel in micrometres, the settings, the numbers of rows and columns, and
-//! the heights in micrometres. A node of 1 000 001 is missing. Images may follow, which are not read.
+//! Date and comment, the calibration with the size of a pixel in micrometres, the settings, the numbers of rows and
+//! columns, and the heights in micrometres. A node of 1 000 001 is missing. Images may follow, which are not read.
 
 use super::bytes::{Bytes, shape};
 use super::number::{Number, positive};

@@ -10,14 +10,15 @@ use nalgebra::DMatrix;
 use super::whole_file::write_whole;
 use crate::{Error, Grid};
 
-/// Writes fields on a grid as an image of VTK, which ParaView opens: one array for each field, on the cells of the grid, in
-/// the plane z = 0, lengths in metres.
+/// Writes fields on a grid as an image of VTK, which ParaView opens: one array for each field, on the cells of the
+/// grid, in the plane z = 0, lengths in metres.
 ///
 /// An existing file is replaced, once the new one is whole.
 ///
 /// # Errors
 ///
-/// [`Error::GridMismatch`] for a field of another shape, and [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
+/// [`Error::GridMismatch`] for a field of another shape, and [`FileError::Io`](crate::FileError::Io) if the file cannot
+/// be written.
 pub fn write_vti(
     path: impl AsRef<Path>,
     grid: &Grid,

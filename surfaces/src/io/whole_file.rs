@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use crate::Error;
 use crate::FileError;
 
-/// Lets `work` write a file under another name beside its place, and then gives it its own, in place of what may be there:
-/// a full disk or a killed process leaves no part of it that looks like the whole. What is no regular file, a device, is
-/// written to as it is.
+/// Lets `work` write a file under another name beside its place, and then gives it its own, in place of what may be
+/// there: a full disk or a killed process leaves no part of it that looks like the whole. What is no regular file, a
+/// device, is written to as it is.
 ///
 /// All writers of this crate write so. It is there for tables and pictures that go with their files:
 ///

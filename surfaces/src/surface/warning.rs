@@ -5,11 +5,13 @@ use std::fmt;
 use super::{Filter, Topography, Trend, Window};
 use crate::number::quantity;
 
-/// Something about a surface that a person should look at: most often a unit that was mistaken. Nothing is refused because of it.
+/// Something about a surface that a person should look at: most often a unit that was mistaken. Nothing is refused
+/// because of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// A surface with slopes above 45°, for which the theory of small slopes does not hold, and that no machining makes.
+    /// A surface with slopes above 45°, for which the theory of small slopes does not hold, and that no machining
+    /// makes.
     Steep {
         /// Root mean square gradient.
         rms_gradient: f64,

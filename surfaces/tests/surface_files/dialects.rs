@@ -1,4 +1,5 @@
-//! Maps and lists written in every dialect: what is read back has the same heights, or is refused. Text and map follow from one number, which a failure names.
+//! Maps and lists written in every dialect: what is read back has the same heights, or is refused. Text and map follow
+//! from one number, which a failure names.
 
 use asperity_surfaces::io::{LengthUnit, MeasuredSurface, ReadOptions};
 use proptest::prelude::*;
@@ -6,7 +7,8 @@ use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A map with dyadic heights and coordinates, so that all of them are written exactly; element `iy * nx + ix`, NaN where missing.
+/// A map with dyadic heights and coordinates, so that all of them are written exactly; element `iy * nx + ix`, NaN
+/// where missing.
 struct Map {
     nx: usize,
     ny: usize,

@@ -19,9 +19,9 @@ use super::{Scratch, own};
 
 const CORRUPTIONS: u64 = 300;
 
-/// Bytes of memory for each byte of a file: the file itself, eight for the height that one byte can make, in up to three
-/// maps that share their bytes, with a mask of one byte each. A compressed file may take more, but only if what it
-/// holds is as long as it says, which is no work of chance.
+/// Bytes of memory for each byte of a file: the file itself, eight for the height that one byte can make, in up to
+/// three maps that share their bytes, with a mask of one byte each. A compressed file may take more, but only if what
+/// it holds is as long as it says, which is no work of chance.
 const BYTES_A_BYTE: u64 = 1 + 3 * (8 + 1);
 
 /// What any file takes, for messages and paths, and what one with compressed parts takes for the tables of an inflater.

@@ -1,5 +1,6 @@
 //! Archives, trees and texts that other programs wrote: what is read is what SurfaceTopography 1.27.1 and, of `.x3p`,
-//! x3pio 2.0.0 and surfalize 0.19.2 find in them. The files are not part of this repository; a test without them says so.
+//! x3pio 2.0.0 and surfalize 0.19.2 find in them. The files are not part of this repository; a test without them says
+//! so.
 
 use std::path::{Path, PathBuf};
 
@@ -120,8 +121,8 @@ fn a_small_archive_of_x3ptools() -> TestResult {
     .assert_in("x3ptools-pyramid.x3p", &ReadOptions::new())
 }
 
-/// Everything in a folder, and a checksum that does not match: of the other readers only x3pio reads it, if told not to look
-/// at checksums. The member seems to hold metres, but the description says to multiply by 1e-6, which both do.
+/// Everything in a folder, and a checksum that does not match: of the other readers only x3pio reads it, if told not to
+/// look at checksums. The member seems to hold metres, but the description says to multiply by 1e-6, which both do.
 #[test]
 fn an_archive_with_a_wrong_checksum() -> TestResult {
     let name = "x3ptools-csafe-logo.x3p";

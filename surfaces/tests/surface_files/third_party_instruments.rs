@@ -1,5 +1,5 @@
-//! Files of instruments beside what SurfaceTopography 1.27.1 finds in each of their channels (`NAME.ref.json`). The files are not
-//! part of this repository; a test without them says so.
+//! Files of instruments beside what SurfaceTopography 1.27.1 finds in each of their channels (`NAME.ref.json`). The
+//! files are not part of this repository; a test without them says so.
 
 use std::fs;
 

@@ -18,8 +18,8 @@ fn cases(count: usize) -> impl Iterator<Item = (Table, Vec<f64>, Vec<LoadingStat
 }
 
 /// Resumed at any of its states, before, at and behind a release, a path goes on with the events of one that was never
-/// interrupted, and knows the fields of the states before. Matrices have a condition of 1e3 at most, and a closing rate of
-/// 1e-3 would lose three digits more: 1e-9 of sixteen digits.
+/// interrupted, and knows the fields of the states before. Matrices have a condition of 1e3 at most, and a closing rate
+/// of 1e-3 would lose three digits more: 1e-9 of sixteen digits.
 #[test]
 fn paths_with_releases_go_on_from_any_state() {
     for (kernel, gaps, all) in cases(6) {
@@ -62,8 +62,8 @@ fn paths_with_releases_go_on_from_any_state() {
     }
 }
 
-/// A contact that nodes have left since is factored once more for its fields, beside the factor of the present one: where
-/// the budget has room for one of them only, the path goes to its end, and the question is refused.
+/// A contact that nodes have left since is factored once more for its fields, beside the factor of the present one:
+/// where the budget has room for one of them only, the path goes to its end, and the question is refused.
 #[test]
 fn earlier_contacts_are_factored_within_the_budget() {
     let (kernel, gaps, all) = cases(1).next().unwrap();
@@ -96,8 +96,8 @@ fn earlier_contacts_are_factored_within_the_budget() {
     assert!(refused > 0 && answered > 0 && ended == refused + answered);
 }
 
-/// A record of such a path keeps all of it but patches, which know no node that leaves. Its kernel cannot be made again, and
-/// its fields are computed on the kernel itself.
+/// A record of such a path keeps all of it but patches, which know no node that leaves. Its kernel cannot be made
+/// again, and its fields are computed on the kernel itself.
 #[cfg(feature = "io")]
 #[test]
 fn records_with_releases_are_read_back() {

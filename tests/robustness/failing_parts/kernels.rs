@@ -123,8 +123,9 @@ const WRONGS: [Wrong; 13] = [
     Wrong::Mean,
 ];
 
-/// A kernel is asked while a solver is built, and never again: either the solver is refused, or it is that of the kernel
-/// without the fault. Growth says what a path costs, and the mean displacement matters on periodic half-spaces alone.
+/// A kernel is asked while a solver is built, and never again: either the solver is refused, or it is that of the
+/// kernel without the fault. Growth says what a path costs, and the mean displacement matters on periodic half-spaces
+/// alone.
 #[test]
 fn a_wrong_answer_at_any_call_is_refused_or_changes_nothing() {
     let right = Failing::new(Wrong::Mean, usize::MAX);
@@ -187,8 +188,8 @@ fn a_wrong_answer_at_any_call_is_refused_or_changes_nothing() {
     }
 }
 
-/// Coefficients that are symmetric and negative at one distance belong to some body, which may not be positive definite: an
-/// error, or the path of that very body.
+/// Coefficients that are symmetric and negative at one distance belong to some body, which may not be positive
+/// definite: an error, or the path of that very body.
 #[test]
 fn a_negated_distance_is_refused_or_followed() {
     let half_space = Failing::new(Wrong::Mean, usize::MAX).inner;

@@ -1,8 +1,8 @@
 //! Wrong answers at the k-th call of an updater.
 //!
-//! An exact updater is held to the contact conditions at every solution: a wrong one is refused before any state rests on
-//! it. What it says of watched nodes is believed until the next solution, and what an inexact updater says of its own
-//! displacements is believed altogether; `updater::check` is what finds those.
+//! An exact updater is held to the contact conditions at every solution: a wrong one is refused before any state rests
+//! on it. What it says of watched nodes is believed until the next solution, and what an inexact updater says of its
+//! own displacements is believed altogether; `updater::check` is what finds those.
 
 use asperity::Problem;
 use asperity::updater;
@@ -21,7 +21,8 @@ fn changes(parts: [Part; 2], values: [fn(f64) -> f64; 3]) -> Vec<Fault> {
     each.flat_map(|(part, value)| [Fault::Each(part, value), Fault::Last(part, value)]).collect()
 }
 
-/// Follows a path for each call that the fault may strike. Returns how many were struck, and how many ended with an error.
+/// Follows a path for each call that the fault may strike. Returns how many were struck, and how many ended with an
+/// error.
 fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
     let expected = small.states(maker);
     let (mut struck, mut refused) = (0, 0);
@@ -60,8 +61,8 @@ fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
     unreachable!("there is a call beyond the last one")
 }
 
-/// Answers of another size, that are no numbers, or to calls that were not passed on: whoever gives them, no wrong state
-/// follows.
+/// Answers of another size, that are no numbers, or to calls that were not passed on: whoever gives them, no wrong
+/// state follows.
 #[test]
 fn what_no_answer_can_be_is_refused() {
     let mut lies = vec![Fault::Forget, Fault::Length(1), Fault::Length(-1)];
@@ -72,7 +73,8 @@ fn what_no_answer_can_be_is_refused() {
         for maker in [MAKERS[0], MAKERS[1]] {
             for &fault in &lies {
                 let (struck, refused) = follow(&small, maker, fault);
-                // Infinite pressures whose displacements are right do no harm, and what is forgotten is looked for again.
+                // Infinite pressures whose displacements are right do no harm, and what is forgotten is looked for
+                // again.
                 assert!(struck > 0 || matches!(fault, Fault::Forget));
                 let is_length = matches!(fault, Fault::Length(1));
                 assert!(!is_length || refused == struck, "{refused} of {struck}");

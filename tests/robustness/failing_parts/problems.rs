@@ -14,8 +14,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::updater::{Failing, Fault, failing};
 
-/// Errors of solutions by a factor, relative to approach and greatest gap: the condition numbers of these matrices are below
-/// 10³, which loses three digits of sixteen.
+/// Errors of solutions by a factor, relative to approach and greatest gap: the condition numbers of these matrices are
+/// below 10³, which loses three digits of sixteen.
 const EXACT: f64 = 1e-12;
 /// The same of paths by iterations, which say themselves how far an approach may be off and pin the rest to 10⁻⁸.
 const ITERATED: f64 = 1e-8;
@@ -59,7 +59,8 @@ impl Small {
         }
     }
 
-    /// One for each procedure: windows, windows whose last events are taken back, one event at a time with nodes that leave.
+    /// One for each procedure: windows, windows whose last events are taken back, one event at a time with nodes that
+    /// leave.
     pub(super) fn all() -> Vec<Self> {
         let grid = Grid::new(5, 4, 1.0, 1.0).unwrap();
         let gaps: Vec<f64> = (0..grid.nodes())

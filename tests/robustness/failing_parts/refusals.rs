@@ -6,8 +6,8 @@ use asperity::{ContactTarget, Error};
 use super::problems::{MAKERS, Maker, Path, Small};
 use super::updater::{Fault, is_refusal};
 
-/// After its end a path yields nothing and does not go on; what it has yielded it still knows. Returns for how many states
-/// it answered.
+/// After its end a path yields nothing and does not go on; what it has yielded it still knows. Returns for how many
+/// states it answered.
 pub(super) fn is_over(
     small: &Small,
     maker: Maker,

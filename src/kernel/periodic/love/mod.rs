@@ -64,9 +64,9 @@ use short_range::{ALPHA, ShortRange};
 ///    \bar u = s \sum p, \qquad M = n_x n_y .
 /// ```
 ///
-/// No gauge changes a pressure, a gap, or the order in which nodes touch. It only changes what the
-/// approach is counted from: `δ_s = δ₀ + s Σp`, where `δ₀` is the approach of the mean planes. [`InfluenceKernel::coefficient`] is in the gauge [`gauge`](Self::gauge), and
-/// [`symbol`](Self::symbol) in the zero gauge.
+/// No gauge changes a pressure, a gap, or the order in which nodes touch. It only changes what the approach is counted
+/// from: `δ_s = δ₀ + s Σp`, where `δ₀` is the approach of the mean planes. [`InfluenceKernel::coefficient`] is in the
+/// gauge [`gauge`](Self::gauge), and [`symbol`](Self::symbol) in the zero gauge.
 ///
 /// The gauge decides, however, whether the matrix is an inverse M-matrix, in which case gaps are convex
 /// functions of the approach; the matrix of the free half-space is one. With A(r) the pseudo-inverse,

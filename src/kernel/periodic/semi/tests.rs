@@ -19,8 +19,9 @@ fn grids() -> Result<Vec<Grid>, Error> {
 
 /// The sum over 2N + 1 images of Love's coefficient, and what is left of it for N to infinity.
 ///
-/// Far from a cell, at (k L + x, y), 1/r for k and −k add up to 2/(k L) (1 + ρ² P₂/(k L)² + …), ρ² P₂ = x² − y²/2, averaged over the
-/// cell. With n = N + ½ the sums of 1/k and 1/k³ beyond N, less that of the logarithm, are −1/(24 n²) and 1/(2 n²), up to n⁻⁴.
+/// Far from a cell, at (k L + x, y), 1/r for k and −k add up to 2/(k L) (1 + ρ² P₂/(k L)² + …), ρ² P₂ = x² − y²/2,
+/// averaged over the cell. With n = N + ½ the sums of 1/k and 1/k³ beyond N, less that of the logarithm, are −1/(24 n²)
+/// and 1/(2 n²), up to n⁻⁴.
 #[test]
 fn images_add_up() -> Result<(), Error> {
     const N: isize = 3000;
@@ -56,8 +57,8 @@ fn images_add_up() -> Result<(), Error> {
                 let rest = (0.5 * second / (side * side) - 1.0 / 24.0) / (n * n);
                 let expected = sum + unit * (rest - libm::log(length / kernel.reference_length()));
                 let found = kernel.coefficient(di, dj);
-                // Roundings of 6000 terms, some 10⁻¹⁴; orders n⁻⁴ = 10⁻¹⁴ of the width over the period to the fourth, at most 120⁴ here
-                // where a row of one cell repeats.
+                // Roundings of 6000 terms, some 10⁻¹⁴; orders n⁻⁴ = 10⁻¹⁴ of the width over the period to the fourth,
+                // at most 120⁴ here where a row of one cell repeats.
                 let ratio = (x2 + y2) / (side * side);
                 let tolerance = 2e-14 + ratio * ratio * unit / own / n.powi(4);
                 let error = (found - expected).abs() / own;
@@ -88,7 +89,8 @@ fn with_a_long_period_it_is_free() -> Result<(), Error> {
     Ok(())
 }
 
-/// Waves along the period do not feel the images across of the periodic kernel, beyond exp(−2π × 6) = 4 × 10⁻¹⁷ of them.
+/// Waves along the period do not feel the images across of the periodic kernel, beyond exp(−2π × 6) = 4 × 10⁻¹⁷ of
+/// them.
 #[test]
 fn waves_are_those_of_the_periodic_kernel() -> Result<(), Error> {
     let (nx, ny) = (8, 96);

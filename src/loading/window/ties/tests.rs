@@ -28,8 +28,8 @@ fn close(found: &[f64], expected: &[f64]) {
     }
 }
 
-/// Five nodes in a window that ends at 4: two that the corrections and the first pass know at other times, one at the very
-/// end, one behind it, and one that did not join.
+/// Five nodes in a window that ends at 4: two that the corrections and the first pass know at other times, one at the
+/// very end, one behind it, and one that did not join.
 #[test]
 fn errors_are_what_the_passes_differ_by() {
     let closing = [[9.0, 0.5], [9.0, 0.25], [9.0, 1.0], [9.0, 1.0], [9.0, 1.0]];
@@ -109,8 +109,8 @@ fn neighbours_are_close_within_their_errors() {
     });
 }
 
-/// The same gap, closing rate and time: within 20 · 10⁻¹⁰ · 2, within 2·10⁻⁵ of the rate, and within a tie or both errors, but no
-/// more than the way on which such a gap closes.
+/// The same gap, closing rate and time: within 20 · 10⁻¹⁰ · 2, within 2·10⁻⁵ of the rate, and within a tie or both
+/// errors, but no more than the way on which such a gap closes.
 #[test]
 fn nodes_that_symmetry_maps_are_told_by_their_lines() {
     let good = [1e-4; 2];
@@ -190,8 +190,8 @@ fn orbits_are_images_at_one_time() {
     }
 }
 
-/// Nodes 9, 8 and 7 have one line, and touch within their errors at 7.5 / 3; nodes 6 and 5 have another one, and are too far from
-/// each other.
+/// Nodes 9, 8 and 7 have one line, and touch within their errors at 7.5 / 3; nodes 6 and 5 have another one, and are
+/// too far from each other.
 #[test]
 fn orbits_touch_at_their_mean_time() {
     let events = [(4, 0.5), (0, 2.0), (2, 2.25), (1, 3.25), (3, 9.0)];
@@ -248,8 +248,8 @@ fn solutions_are_as_exact_as_errors_ask() {
     });
 }
 
-/// `(4, 2, 1; 2, 4, 1; 1, 1, 4)` without its first node: 4 − 1, 1 − 1/2, 4 − 1/4; and at the time 2, at which the first closes at
-/// the rate 1 − 2 · 2/8, the others at 1 − 1/2 · 1/2 and 2 − 1/4 · 1/2.
+/// `(4, 2, 1; 2, 4, 1; 1, 1, 4)` without its first node: 4 − 1, 1 − 1/2, 4 − 1/4; and at the time 2, at which the first
+/// closes at the rate 1 − 2 · 2/8, the others at 1 − 1/2 · 1/2 and 2 − 1/4 · 1/2.
 #[test]
 fn events_before_are_eliminated() -> Result<(), Error> {
     let mut window = alone(&[7, 8, 9], &[[1.0; 2]; 3]);

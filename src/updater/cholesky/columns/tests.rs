@@ -113,8 +113,8 @@ fn blocks_are_of_much_the_same_width() {
     }
 }
 
-/// `L F = B` gives the columns that B was made of; they are recognised when they are watched again, and both products are
-/// those of the columns.
+/// `L F = B` gives the columns that B was made of; they are recognised when they are watched again, and both products
+/// are those of the columns.
 #[test]
 fn columns_are_solved_for_and_kept() {
     let factor = factor();
@@ -164,8 +164,8 @@ fn check_products(columns: &Columns, numbers: &[usize]) {
     }
 }
 
-/// The rows of nodes that touch are their columns and their part of the factor of the Schur complement; the other columns grow
-/// by theirs.
+/// The rows of nodes that touch are their columns and their part of the factor of the Schur complement; the other
+/// columns grow by theirs.
 #[test]
 fn nodes_that_touch_become_rows() {
     let mut factor = factor();

@@ -20,10 +20,10 @@ fn rotate<const N: usize>((c, s): Rotation, l: &mut [f64; N], x: &mut [f64; N]) 
 
 /// Removes the rows and columns at `positions` (ascending) of `C = L Lᵀ`.
 ///
-/// The rows above the first of them stay. A row below loses its entries x in the removed columns, which leaves
-/// `L Lᵀ + Σ x xᵀ` to be factored: for each remaining column one rotation with each removed one before it makes x vanish
-/// (Gill, Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as
-/// accurate as the old one. Some 3 m (n − k)² flops for m rows from the one at k on; the factor passes the cache once.
+/// The rows above the first of them stay. A row below loses its entries x in the removed columns, which leaves `L Lᵀ +
+/// Σ x xᵀ` to be factored: for each remaining column one rotation with each removed one before it makes x vanish (Gill,
+/// Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as accurate as the old one.
+/// Some 3 m (n − k)² flops for m rows from the one at k on; the factor passes the cache once.
 pub(in crate::updater::cholesky) fn remove(panels: &mut Panels, positions: &[usize]) {
     let Some(&first) = positions.first() else {
         return;
@@ -110,7 +110,8 @@ impl Block<'_> {
         }
     }
 
-    /// The same with the rows' own columns, the rotations of which they give: the block's rows begin at the first of `columns`.
+    /// The same with the rows' own columns, the rotations of which they give: the block's rows begin at the first of
+    /// `columns`.
     fn triangle(
         &mut self,
         rotations: &mut Vec<Vec<Rotation>>,

@@ -104,8 +104,8 @@ fn apart(found: &Schur, exact: &Schur) -> f64 {
     worst
 }
 
-/// With all of the contact near each node matrices are exact but for single precision, and lines are those of the dense solution,
-/// residuals and all. What sums answer is solved for to 3·10⁻³ of the right-hand side.
+/// With all of the contact near each node matrices are exact but for single precision, and lines are those of the dense
+/// solution, residuals and all. What sums answer is solved for to 3·10⁻³ of the right-hand side.
 #[test]
 fn proposals_beside_few_nodes_are_exact() -> Result<(), Error> {
     for problem in problems(14, 12)? {
@@ -195,8 +195,8 @@ fn proposals_beside_many_nodes_are_of_second_order() -> Result<(), Error> {
     Ok(())
 }
 
-/// From a solution on: two of the contact yield, three nodes join, and one touches and yields. Pressures, rates and displacements there, and
-/// at a state in between, are those of dense solutions; going back, all is as before.
+/// From a solution on: two of the contact yield, three nodes join, and one touches and yields. Pressures, rates and
+/// displacements there, and at a state in between, are those of dense solutions; going back, all is as before.
 #[test]
 fn solutions_behind_yields_are_exact() -> Result<(), Error> {
     for problem in problems(14, 12)? {

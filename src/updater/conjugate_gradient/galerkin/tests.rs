@@ -71,8 +71,8 @@ fn nodes_of(problem: &Problem, pressures: &[(usize, f64)]) -> Vec<(usize, f64)> 
     found
 }
 
-/// Node (1, 3), answered by nodes two cells before it, round the edge, and one behind and above: the box goes from −2 to 1 and
-/// from 0 to 1, and so small a box is not interpolated.
+/// Node (1, 3), answered by nodes two cells before it, round the edge, and one behind and above: the box goes from −2
+/// to 1 and from 0 to 1, and so small a box is not interpolated.
 #[test]
 fn sources_are_as_large_as_their_contact() -> Result<(), Error> {
     let grid = Grid::new(12, 5, 0.5, 2.0)?;
@@ -126,8 +126,8 @@ fn energy(problem: &Problem, a: &Local, b: &Local) -> f64 {
     sum
 }
 
-/// Of sources far from each other: as it stands where boxes are small, and with an error of (4/30)⁶ for boxes of nine cells, 30
-/// cells apart.
+/// Of sources far from each other: as it stands where boxes are small, and with an error of (4/30)⁶ for boxes of nine
+/// cells, 30 cells apart.
 #[test]
 fn sources_far_away_are_interpolated() -> Result<(), Error> {
     for periodic in [false, true] {
@@ -154,8 +154,8 @@ fn sources_far_away_are_interpolated() -> Result<(), Error> {
     Ok(())
 }
 
-/// With all nodes in contact near every watched one the complement is that of a dense solution, but for the single precision of
-/// local solutions.
+/// With all nodes in contact near every watched one the complement is that of a dense solution, but for the single
+/// precision of local solutions.
 #[test]
 fn sources_near_each_other_are_exact() -> Result<(), Error> {
     for periodic in [false, true] {
@@ -187,8 +187,8 @@ fn sources_near_each_other_are_exact() -> Result<(), Error> {
     Ok(())
 }
 
-/// Whatever the weights are, nodes that answer the other one feel nothing of it, but for that one itself: of the first these are
-/// nodes 4 and 6, of the second node 6.
+/// Whatever the weights are, nodes that answer the other one feel nothing of it, but for that one itself: of the first
+/// these are nodes 4 and 6, of the second node 6.
 #[test]
 fn nodes_that_answer_feel_nothing() -> Result<(), Error> {
     let problem = crate::test_chain::problem(&[0.0; 9])?;
@@ -200,8 +200,8 @@ fn nodes_that_answer_feel_nothing() -> Result<(), Error> {
     let locals = [local(5, &[4, 6]), local(7, &[6, 5])];
     let mut matrix = vec![0.0; 4];
     schur(&problem, &locals, &mut matrix);
-    // Node 5 on itself: 4 − 1/2 − 1/2. Node 7: u = 4 − 1/2. Of the second on the first, only node 7 feels nothing of node 5 and
-    // −1/2 of node 6; node 5 is the first one itself and feels 4 − 1/2 − 1/2, times −1/2.
+    // Node 5 on itself: 4 − 1/2 − 1/2. Node 7: u = 4 − 1/2. Of the second on the first, only node 7 feels nothing of
+    // node 5 and −1/2 of node 6; node 5 is the first one itself and feels 4 − 1/2 − 1/2, times −1/2.
     assert_eq!([matrix[0], matrix[1], matrix[3]], [3.0, -0.5 - 1.5, 3.5]);
     Ok(())
 }

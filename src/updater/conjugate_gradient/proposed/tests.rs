@@ -30,8 +30,8 @@ fn near(found: &[f64], expected: &[f64]) {
     }
 }
 
-/// At the approach 4 nodes 0 and 2 carry 1 and 1/2, and node 1 sinks by 1.5 of the 3 m that it overlaps: it takes 1.5/3.5, and a
-/// quarter of that off each neighbour.
+/// At the approach 4 nodes 0 and 2 carry 1 and 1/2, and node 1 sinks by 1.5 of the 3 m that it overlaps: it takes
+/// 1.5/3.5, and a quarter of that off each neighbour.
 #[test]
 fn nodes_that_join_are_carried() -> Result<(), Error> {
     let (problem, proposed) = proposed()?;
@@ -123,8 +123,8 @@ fn residuals_improve_displacements() -> Result<(), Error> {
     Ok(())
 }
 
-/// Of node 1, which has joined, 1 − 3/16 is left, so that its pressure changes by 13/16 over 3.5, and the displacement of node 3
-/// by 1/16 and −1/4 of that. Of rates it is 1/2 − 5/16, and 1/4.
+/// Of node 1, which has joined, 1 − 3/16 is left, so that its pressure changes by 13/16 over 3.5, and the displacement
+/// of node 3 by 1/16 and −1/4 of that. Of rates it is 1/2 − 5/16, and 1/4.
 #[test]
 fn residuals_improve_solutions_inside_a_window() -> Result<(), Error> {
     let (problem, proposed) = proposed()?;

@@ -1,8 +1,8 @@
 //! Solutions when nodes have yielded since the last one.
 //!
-//! Nodes that yield leave the contact and are a load from then on. Until all pressures are known they are counted among them: a field of
-//! the contact before, with what joined and what yielded, has displacements that are known but for the change; in the end those under
-//! the yielded nodes are taken off.
+//! Nodes that yield leave the contact and are a load from then on. Until all pressures are known they are counted among
+//! them: a field of the contact before, with what joined and what yielded, has displacements that are known but for the
+//! change; in the end those under the yielded nodes are taken off.
 
 use std::borrow::Cow;
 use std::mem;

@@ -82,8 +82,8 @@ impl Solutions {
     ///
     /// # Errors
     ///
-    /// [`Error::LengthMismatch`], [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`], and [`Error::OutOfRange`] for numbers that are not
-    /// those of a solution on it.
+    /// [`Error::LengthMismatch`], [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`], and [`Error::OutOfRange`] for
+    /// numbers that are not those of a solution on it.
     pub(in super::super) fn restore(
         criteria: Criteria,
         problem: &Problem,

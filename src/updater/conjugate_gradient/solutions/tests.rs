@@ -151,7 +151,8 @@ fn contacts_respond() -> Result<(), Error> {
     Ok(())
 }
 
-/// A solution of another updater is a start: pressures and rates of the nodes in contact, of which nothing else is known.
+/// A solution of another updater is a start: pressures and rates of the nodes in contact, of which nothing else is
+/// known.
 #[test]
 fn solutions_are_taken_over() -> Result<(), Error> {
     let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0])?;

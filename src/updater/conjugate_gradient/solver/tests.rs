@@ -39,8 +39,9 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |most, (a, b)| (a - b).abs().max(most))
 }
 
-/// The first residual is 1, and the first step begins with it: what the step may have spoilt of displacements is 2·10⁻⁷ of both of
-/// its residuals, and as much was there before it. Displacements are as good as that, and residuals as the tolerance.
+/// The first residual is 1, and the first step begins with it: what the step may have spoilt of displacements is 2·10⁻⁷
+/// of both of its residuals, and as much was there before it. Displacements are as good as that, and residuals as the
+/// tolerance.
 #[test]
 fn what_single_precision_spoils_is_known() -> Result<(), Error> {
     let (field, fresh, expected) = solved(4e-6, f64::INFINITY, &Field::default())?;
@@ -70,9 +71,10 @@ fn what_single_precision_spoils_is_known() -> Result<(), Error> {
     Ok(())
 }
 
-/// On cells 10⁴ times as long as wide short waves displace by 10⁻⁴ of what long ones do: pressures that take out what is left of
-/// them are large, and what they spoil of long waves is far more than what they displace. Computed afresh, no residual is above
-/// the tolerance; 31 of these 40 were, by a factor of up to 4.3, where only what is displaced was counted.
+/// On cells 10⁴ times as long as wide short waves displace by 10⁻⁴ of what long ones do: pressures that take out what
+/// is left of them are large, and what they spoil of long waves is far more than what they displace. Computed afresh,
+/// no residual is above the tolerance; 31 of these 40 were, by a factor of up to 4.3, where only what is displaced was
+/// counted.
 #[test]
 fn noise_of_long_cells_is_counted() -> Result<(), Error> {
     let grid = Grid::new(7, 7, 1.0, 1e-4)?;

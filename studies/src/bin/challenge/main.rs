@@ -44,7 +44,8 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error: asperity::Error| Failure::new("a contact of the challenge", error);
     let finest = usize::from(options.nodes);
-    // The meshes have one surface, with 4, 8 and 16 cells to its shortest wave, on up to half the nodes of the finest grid.
+    // The meshes have one surface, with 4, 8 and 16 cells to its shortest wave, on up to half the nodes of the finest
+    // grid.
     let common = finest / 8;
     let mut meshes = Vec::new();
     for nodes in [common, 2 * common, 4 * common] {

@@ -7,8 +7,8 @@ use asperity_studies::order::order;
 pub(crate) const CELLS: [usize; 5] = [4, 8, 16, 32, 64];
 /// The same of the square punch, which has no fluctuation to average over.
 pub(crate) const PUNCH_CELLS: [usize; 6] = [4, 8, 16, 32, 64, 128];
-/// Loads over which an error is averaged, from 3/4 to 5/4 of a target: that of a single state depends on how the edge of
-/// contact runs through the cells.
+/// Loads over which an error is averaged, from 3/4 to 5/4 of a target: that of a single state depends on how the edge
+/// of contact runs through the cells.
 pub(crate) const LOADS: usize = 15;
 /// Where the apex is relative to the middle of the grid, in cells: on a node and between nodes, and twice in general
 /// position.

@@ -1,5 +1,5 @@
-//! The wave in two directions, between the limits of Johnson, Greenwood and Higginson: Hertz contact of each crest under
-//! a light load, a penny crack in each valley just below full contact, and full contact itself.
+//! The wave in two directions, between the limits of Johnson, Greenwood and Higginson: Hertz contact of each crest
+//! under a light load, a penny crack in each valley just below full contact, and full contact itself.
 
 use asperity::reference::DoubleWave;
 use asperity::surface::BiWave;
@@ -25,8 +25,8 @@ const LIGHT: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 const HEAVY: [f64; 5] = [5e-3, 1e-2, 2e-2, 5e-2, 0.1];
 /// By how much the extrapolated area may differ from the limit, relative.
 pub(crate) const CLOSE: f64 = 0.01;
-/// The same of the load of full contact in spectral solutions, which have the wave as one of their own: what gaps wrong by
-/// the tolerance mean for pressures, at worst as the shortest wave of the finest grid, 256/(2√2) times as stiff.
+/// The same of the load of full contact in spectral solutions, which have the wave as one of their own: what gaps wrong
+/// by the tolerance mean for pressures, at worst as the shortest wave of the finest grid, 256/(2√2) times as stiff.
 pub(crate) const EXACT: f64 = 1e-10;
 /// Of the solutions in full contact.
 const FULL_TOLERANCE: f64 = 1e-12;
@@ -34,8 +34,8 @@ const FULL_TOLERANCE: f64 = 1e-12;
 /// Full contact on finer and finer grids.
 pub(crate) struct Full {
     pub(crate) kernel: Periodic,
-    /// (nodes along the wave, relative errors of the load of full contact, of the greatest pressure and of the energy at
-    /// P = 1.02).
+    /// (nodes along the wave, relative errors of the load of full contact, of the greatest pressure and of the energy
+    /// at P = 1.02).
     pub(crate) errors: Vec<(usize, [f64; 3])>,
     /// Greatest pressure over p* at P = 1.02 on the finest grid; 2.02 is exact.
     pub(crate) peak: f64,

@@ -123,7 +123,8 @@ impl Study {
         enough.last().map(|family| family.mesh.cells)
     }
 
-    /// What the correction takes away over what counting cells gives too much, on the mean over the loads; 1 would be exact.
+    /// What the correction takes away over what counting cells gives too much, on the mean over the loads; 1 would be
+    /// exact.
     pub(crate) fn taken(&self, family: &Family) -> f64 {
         let each = (0..LOADS.len()).map(|load| self.left(family, load));
         let [counted, corrected] =

@@ -59,7 +59,8 @@ impl Fit {
         })
     }
 
-    /// Offset and amplitude are the best ones for a t, which is searched for in steps first, then between the neighbours of the best.
+    /// Offset and amplitude are the best ones for a t, which is searched for in steps first, then between the
+    /// neighbours of the best.
     fn new(
         points: &[(f64, f64)],
         shape: Shape,

@@ -33,8 +33,8 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) reuse: bool,
 
-    /// path.csv of `asperity path --nodes N --short-cutoff 78.125e-6 --e-star 1 --max-area-fraction 1`: draw it and report on
-    /// it as well
+    /// path.csv of `asperity path --nodes N --short-cutoff 78.125e-6 --e-star 1 --max-area-fraction 1`: draw it and
+    /// report on it as well
     #[arg(long, value_name = "FILE.csv", conflicts_with = "figure")]
     pub(crate) whole_path: Option<PathBuf>,
 

@@ -5,8 +5,8 @@
 //! cargo run --release -p asperity-studies --bin peers -- --report docs/validation.md
 //! ```
 //!
-//! The first line solves everything with the other programs and writes `peers.csv` and `waves.csv`; the second solves it again here and
-//! makes the table. `--write DIR` writes the surfaces and our solutions, which the first line wants.
+//! The first line solves everything with the other programs and writes `peers.csv` and `waves.csv`; the second solves
+//! it again here and makes the table. `--write DIR` writes the surfaces and our solutions, which the first line wants.
 
 mod ours;
 mod report;

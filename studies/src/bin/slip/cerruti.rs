@@ -1,9 +1,9 @@
 //! Displacements of a half-space under uniform tractions on square cells of side 1, E* = 1.
 //!
-//! Of bodies alike, or one on a rigid one (Johnson, *Contact Mechanics*, §3.6): with r the distance and k = ν/(1 − ν), a traction along
-//! x displaces by `(1/r + k x²/r³)/π` along x and by `k x y/r³/π` along y, and a pressure by `1/r/π` into the body. Bodies that differ
-//! are coupled by Dundurs' β: a traction along x displaces by `β x/r²/π` normally, and a pressure by `−β x/r²/π` along x. Each is
-//! integrated over the cell in closed form.
+//! Of bodies alike, or one on a rigid one (Johnson, *Contact Mechanics*, §3.6): with r the distance and k = ν/(1 − ν),
+//! a traction along x displaces by `(1/r + k x²/r³)/π` along x and by `k x y/r³/π` along y, and a pressure by `1/r/π`
+//! into the body. Bodies that differ are coupled by Dundurs' β: a traction along x displaces by `β x/r²/π` normally,
+//! and a pressure by `−β x/r²/π` along x. Each is integrated over the cell in closed form.
 
 use nalgebra::DMatrix;
 
@@ -102,7 +102,8 @@ impl Corners {
 mod tests {
     use super::*;
 
-    /// By the mid-point rule on 200² parts of a cell two cells away, and of the cell itself by symmetry: the xx and yy parts are halves.
+    /// By the mid-point rule on 200² parts of a cell two cells away, and of the cell itself by symmetry: the xx and yy
+    /// parts are halves.
     #[test]
     fn integrals_are_those_of_the_densities() {
         let corners = Corners::around(2.0, -1.0);

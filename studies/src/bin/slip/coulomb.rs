@@ -1,5 +1,5 @@
-//! Coulomb's law on all nodes of a contact, step by step in the displacement: tractions of any direction within discs, by Gauss and
-//! Seidel node by node (Jourdan, Alart & Jean, Comput. Methods Appl. Mech. Eng. 155 (1998) 31).
+//! Coulomb's law on all nodes of a contact, step by step in the displacement: tractions of any direction within discs,
+//! by Gauss and Seidel node by node (Jourdan, Alart & Jean, Comput. Methods Appl. Mech. Eng. 155 (1998) 31).
 
 use asperity_cli::outcome::Failure;
 use nalgebra::{DMatrix, DVector};
@@ -38,8 +38,8 @@ impl Coulomb {
         &self.influence * &self.traction
     }
 
-    /// The tractions that make these displacements where they stay within their limits; where they do not, they are at the limit and
-    /// against what is missing.
+    /// The tractions that make these displacements where they stay within their limits; where they do not, they are at
+    /// the limit and against what is missing.
     pub(crate) fn solve(&mut self, wanted: &DVector<f64>, limits: &[f64]) -> Result<(), Failure> {
         let scale = limits.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let mut missing = wanted - self.displacement();

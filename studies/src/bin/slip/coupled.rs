@@ -1,5 +1,5 @@
-//! A rigid surface on one body, which is coupled: pressed with friction, then sheared, by turns of the normal and the tangential
-//! problem.
+//! A rigid surface on one body, which is coupled: pressed with friction, then sheared, by turns of the normal and the
+//! tangential problem.
 
 use std::fmt::Write as _;
 

@@ -55,7 +55,8 @@ impl Pressed {
         Self::new(format!("rough, seed {seed}"), HeightMap::sample(&surface, &grid)?, nodes)
     }
 
-    /// Ridges four times as long as wide, along x or along y: a rough surface whose cells were four times as wide as long.
+    /// Ridges four times as long as wide, along x or along y: a rough surface whose cells were four times as wide as
+    /// long.
     pub(crate) fn ridges(seed: u64, along_x: bool, nodes: usize) -> Result<Self, Error> {
         let stretched = Grid::new(SIDE, SIDE, 0.5, 2.0)?;
         let surface = SelfAffine::new(0.8, 16.0, 4.0, Amplitude::RmsHeight(0.3), seed)?;

@@ -1,5 +1,5 @@
-//! Partial slip: Mindlin's sphere over meshes, and joints against an incremental solution of Coulomb's law on Cerruti's half-space,
-//! which shares neither the path nor its assumptions.
+//! Partial slip: Mindlin's sphere over meshes, and joints against an incremental solution of Coulomb's law on Cerruti's
+//! half-space, which shares neither the path nor its assumptions.
 //!
 //! ```text
 //! cargo run --release -p asperity-studies --bin slip -- --report docs/joints_that_slip.md

@@ -16,8 +16,8 @@ const AROUND: usize = 32;
 /// How far two states are from each other.
 type Difference<'a> = &'a dyn Fn(&LoadingState, &LoadingState) -> f64;
 
-/// Prints how a path differs from an exact one. The approach that is computed with contains the displacement `uniform` for each
-/// unit of load.
+/// Prints how a path differs from an exact one. The approach that is computed with contains the displacement `uniform`
+/// for each unit of load.
 pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64) {
     let place: HashMap<(usize, usize), usize> =
         exact.iter().enumerate().map(|(k, state)| (state.node, k)).collect();

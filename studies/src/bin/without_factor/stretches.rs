@@ -14,8 +14,8 @@ const TOLERANCE: f64 = 1e-12;
 /// Events closer than this, relative to their approach, are ties.
 const TIE: f64 = 1e-9;
 
-/// Follows stretches spread evenly over a recorded path once more, with an exact solution at every event, and prints how
-/// order and approaches differ.
+/// Follows stretches spread evenly over a recorded path once more, with an exact solution at every event, and prints
+/// how order and approaches differ.
 pub(crate) fn compare(record: &LoadingRecord, stretches: usize) -> Result<(), Box<dyn Error>> {
     let kernel = record.make_kernel()?;
     let states = record.history().events();

@@ -1,8 +1,8 @@
 //! Gwyddion's own format, `.gwy`.
 //!
 //! A map is the component `/N/data` of the outermost container, N any number: an object `GwyDataField` with `xres` ×
-//! `yres` values and sides `xreal`, `yreal`, in the units `si_unit_xy` and `si_unit_z`. `/N/data/title` is its name, and
-//! `/N/mask`, a field of the same shape, marks nodes with values above ½. Everything else is passed over.
+//! `yres` values and sides `xreal`, `yreal`, in the units `si_unit_xy` and `si_unit_z`. `/N/data/title` is its name,
+//! and `/N/mask`, a field of the same shape, marks nodes with values above ½. Everything else is passed over.
 //!
 //! Source: Gwyddion's user guide, chapter "Gwyddion native data".
 

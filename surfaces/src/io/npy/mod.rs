@@ -29,9 +29,9 @@ use crate::Error;
 ///
 /// [`FileError::Io`](crate::FileError::Io) if the file cannot be read, or there is not enough memory for it;
 /// [`Error::EmptyGrid`] for an array without elements; [`Error::GridTooLarge`] beyond
-/// [`Grid::MAX_SIDE`](crate::Grid::MAX_SIDE) a side; [`FileError::BadFile`](crate::FileError::BadFile) for another type of elements or number of dimensions,
-/// a malformed header, a file that is shorter or longer than its header says, and anything that is
-/// not a regular file (a directory, a pipe), which is not opened.
+/// [`Grid::MAX_SIDE`](crate::Grid::MAX_SIDE) a side; [`FileError::BadFile`](crate::FileError::BadFile) for another type
+/// of elements or number of dimensions, a malformed header, a file that is shorter or longer than its header says, and
+/// anything that is not a regular file (a directory, a pipe), which is not opened.
 pub fn read_npy(path: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
     let path = path.as_ref();
     whole(read_file(path), path)

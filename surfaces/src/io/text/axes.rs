@@ -1,7 +1,7 @@
 //! Positions and running numbers in the first row and the first column of a matrix: they are no heights.
 //!
-//! Positions are evenly spaced. A row of measured heights never is while its neighbours are not. Where there are few numbers, or
-//! the heights are those of a plane, several ways of reading are left.
+//! Positions are evenly spaced. A row of measured heights never is while its neighbours are not. Where there are few
+//! numbers, or the heights are those of a plane, several ways of reading are left.
 
 use super::header::Header;
 use super::layout::TextLayout;

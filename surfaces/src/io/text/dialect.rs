@@ -157,8 +157,8 @@ fn is_parted_by_blanks(line: &[u8]) -> bool {
     line.contains(&b' ') && !line.contains(&b'\t')
 }
 
-/// Whether commas are decimal in lines without `;`: if numbers are parted by blanks or tabs, and no comma stands at the end of
-/// one, or twice in one.
+/// Whether commas are decimal in lines without `;`: if numbers are parted by blanks or tabs, and no comma stands at the
+/// end of one, or twice in one.
 fn commas_are_decimal<'a>(rows: impl Iterator<Item = Line<'a>>) -> bool {
     let mut parted = false;
     for line in rows {

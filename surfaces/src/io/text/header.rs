@@ -48,7 +48,8 @@ struct Length {
     unit: Option<String>,
 }
 
-// What Gwyddion writes above a matrix, in the languages that it speaks, in small letters, and what WSxM and SPIP call it.
+// What Gwyddion writes above a matrix, in the languages that it speaks, in small letters, and what WSxM and SPIP call
+// it.
 const TITLE: &str = "channel|kanál|kanal|canal|canale|チャネル|채널|канал";
 const WIDTH: &str = "width|šířka|breite|anchura|largeur|larghezza|幅|폭|largura|ширина|x amplitude|x-length|x length";
 const HEIGHT: &str =
@@ -206,8 +207,8 @@ impl Header {
             && self.rows.is_none_or(|stated| stated == rows)
     }
 
-    /// Whether `count` numbers in such steps can be positions: any can unless there is a side, with which they have to agree,
-    /// be they those of cells or those of nodes from edge to edge.
+    /// Whether `count` numbers in such steps can be positions: any can unless there is a side, with which they have to
+    /// agree, be they those of cells or those of nodes from edge to edge.
     pub(super) fn may_be_axis(&self, count: usize, along_x: bool, step: f64) -> bool {
         if count < 2 || !self.has_sides() {
             return true;

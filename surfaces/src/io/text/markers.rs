@@ -2,8 +2,8 @@
 
 use crate::number::counted;
 
-/// How many times the range of all other heights a number has to be away from them: one that programs use as a mark, and any
-/// other that occurs more than once.
+/// How many times the range of all other heights a number has to be away from them: one that programs use as a mark,
+/// and any other that occurs more than once.
 const FAR: f64 = 1.0;
 const VERY_FAR: f64 = 10.0;
 

@@ -1,17 +1,18 @@
 //! Text: rows of numbers, and lists of points.
 //!
-//! Rows of a matrix are those of an image, and node (ix, iy) is in column ix of row iy: the transpose of an array `[ix, iy]`
-//! in `.npy`. Lists have a point x, y, z in each row; they make a map if the points lie on a regular grid, on
+//! Rows of a matrix are those of an image, and node (ix, iy) is in column ix of row iy: the transpose of an array `[ix,
+//! iy]` in `.npy`. Lists have a point x, y, z in each row; they make a map if the points lie on a regular grid, on
 //! which some may be absent.
 //!
 //! Numbers are parted by blanks, tabs, `;` or commas, with a decimal point, or a comma where something else parts them.
-//! Empty cells, `NaN`, `BAD`, `***` and the like are missing. Of the header those lines are understood that Gwyddion writes
-//! over a matrix or a list, in the languages it speaks, and names of columns with units.
+//! Empty cells, `NaN`, `BAD`, `***` and the like are missing. Of the header those lines are understood that Gwyddion
+//! writes over a matrix or a list, in the languages it speaks, and names of columns with units.
 //!
 //! One column, or two, in more than three rows are a profile, which becomes one row of nodes.
 //!
-//! A list is known by names of its columns, by the extension `.xyz`, or by its coordinates; positions in the first row and column
-//! of a matrix by their even steps. Where numbers can be read in several ways, the user has to say which is meant.
+//! A list is known by names of its columns, by the extension `.xyz`, or by its coordinates; positions in the first row
+//! and column of a matrix by their even steps. Where numbers can be read in several ways, the user has to say which is
+//! meant.
 
 mod arrangement;
 mod axes;

@@ -1,7 +1,7 @@
 //! A text with a point x, y, z in every row.
 //!
-//! Nodes are found from the coordinates, so that points may come in any order, and need not all be there: scanners leave out
-//! what they did not see.
+//! Nodes are found from the coordinates, so that points may come in any order, and need not all be there: scanners
+//! leave out what they did not see.
 
 use super::names::Columns;
 use super::table::Table;
@@ -175,8 +175,8 @@ impl Axis {
     }
 }
 
-/// The smallest distance between coordinates that are not the same but for rounding, and how many such coordinates there are;
-/// `None` if the distance is too small for a grid.
+/// The smallest distance between coordinates that are not the same but for rounding, and how many such coordinates
+/// there are; `None` if the distance is too small for a grid.
 fn spacing(mut sorted: Vec<f64>, extent: f64) -> Option<(f64, usize)> {
     let mut last = sorted.first().copied()?;
     for coordinate in &mut sorted {

@@ -50,7 +50,8 @@ pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
     })
 }
 
-/// Heights at even steps, and the step: those of the file if its steps are even, otherwise between them on straight lines.
+/// Heights at even steps, and the step: those of the file if its steps are even, otherwise between them on straight
+/// lines.
 fn on_even_steps(
     mut positions: Vec<f64>,
     mut values: Vec<f64>,

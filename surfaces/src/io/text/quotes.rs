@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 /// The text with blanks for quotes, so that every other byte keeps its place.
 ///
-/// A comma inside of quotes parts nothing: in a number it is a decimal comma, or, beside a point or another comma, parts
-/// thousands, which are no numbers to this crate; between words it is a blank.
+/// A comma inside of quotes parts nothing: in a number it is a decimal comma, or, beside a point or another comma,
+/// parts thousands, which are no numbers to this crate; between words it is a blank.
 pub(super) fn removed(file: &[u8]) -> Cow<'_, [u8]> {
     if !file.contains(&b'"') {
         return file.into();

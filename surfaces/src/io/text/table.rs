@@ -167,10 +167,12 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
     }
 }
 
-/// Most lines without numbers that are taken for rows of missing heights above the others: more nodes than there are in a grid.
+/// Most lines without numbers that are taken for rows of missing heights above the others: more nodes than there are in
+/// a grid.
 const MOST_ABOVE: usize = crate::Grid::MAX_SIDE;
 
-/// Appends the numbers of a line. Returns how many empty cells are before the first number, and whether the last is empty.
+/// Appends the numbers of a line. Returns how many empty cells are before the first number, and whether the last is
+/// empty.
 fn row(line: &Line, dialect: Dialect, values: &mut Vec<f64>) -> Result<(usize, bool), Fault> {
     let Some(separator) = dialect.separator else {
         cell(line, line.bytes, dialect, values)?;

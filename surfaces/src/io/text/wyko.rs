@@ -1,6 +1,7 @@
 //! Text of a Wyko interferometer: heights in waves of light, one line for each place along x.
 //!
-//! A line of names ends with the type, the length in bytes and the value of a block. Pixels are in mm, the wavelength in nm.
+//! A line of names ends with the type, the length in bytes and the value of a block. Pixels are in mm, the wavelength
+//! in nm.
 
 use std::collections::HashMap;
 

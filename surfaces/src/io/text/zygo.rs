@@ -1,7 +1,7 @@
 //! Text of a Zygo interferometer: a list of points in pixels, with heights in µm.
 //!
-//! Fourteen lines of a header end with `#`. The fourth gives the first pixel and the numbers of pixels, the eighth the size of
-//! a pixel in metres, 0 if it is not known.
+//! Fourteen lines of a header end with `#`. The fourth gives the first pixel and the numbers of pixels, the eighth the
+//! size of a pixel in metres, 0 if it is not known.
 
 use super::names::Columns;
 use super::points;

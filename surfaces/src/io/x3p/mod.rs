@@ -1,8 +1,8 @@
 //! ISO 25178-72 (before: ISO 5436-2), `.x3p`.
 //!
-//! A zip archive with a description, `main.xml`, the heights in a member of their own, `bindata/data.bin`, and checksums.
-//! Archives packed by hand hold all of it in a folder. Points that were not measured are NaN, or, where heights are
-//! integers, marked in `bindata/valid.bin`, one bit for each point, the least significant first.
+//! A zip archive with a description, `main.xml`, the heights in a member of their own, `bindata/data.bin`, and
+//! checksums. Archives packed by hand hold all of it in a folder. Points that were not measured are NaN, or, where
+//! heights are integers, marked in `bindata/valid.bin`, one bit for each point, the least significant first.
 //!
 //! The description and the data have to agree to the byte: a matrix whose sizes were wrong by one would be a sheared
 //! surface. Checksums that do not match are common in files that circulate, and only noted.

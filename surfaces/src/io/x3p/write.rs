@@ -27,7 +27,8 @@ const DATA: &str = "bindata/data.bin";
 ///
 /// # Errors
 ///
-/// [`Error::GridMismatch`] if the grid has another shape, and [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
+/// [`Error::GridMismatch`] if the grid has another shape, and [`FileError::Io`](crate::FileError::Io) if the file
+/// cannot be written.
 pub fn write_x3p(path: impl AsRef<Path>, grid: &Grid, heights: &DMatrix<f64>) -> Result<(), Error> {
     grid.check_shape(heights.shape())?;
     write_whole(path, |output| write(output, grid, heights))

@@ -105,8 +105,8 @@ mod tests {
 
     use super::*;
 
-    /// Numbers that are none come to an end at once, and say so. Heights cannot bring them: they are finite, and between
-    /// −1 and 1 here.
+    /// Numbers that are none come to an end at once, and say so. Heights cannot bring them: they are finite, and
+    /// between −1 and 1 here.
     #[test]
     fn what_is_no_number_ends_the_iteration() -> Result<(), Error> {
         let holed = dmatrix![0.0, 1.0, 0.5; 1.0, f64::NAN, 0.25; 0.5, f64::NAN, 1.0];

@@ -19,7 +19,8 @@ fn map(name: &str, sides: (f64, f64)) -> Result<Topography, Error> {
 /// A quantity of a map, and what it is of both maps.
 type Quantity = (fn(&Topography) -> f64, [f64; 2]);
 
-/// tamaas: m₀, m₂ and m₄ (turned from turns into radians, on a square of side 1), rms gradient, least pressure of full contact.
+/// tamaas: m₀, m₂ and m₄ (turned from turns into radians, on a square of side 1), rms gradient, least pressure of full
+/// contact.
 #[test]
 fn tamaas_finds_the_same() -> Result<(), Error> {
     // Its m₄ is another mean, which an isotropic surface has alike.

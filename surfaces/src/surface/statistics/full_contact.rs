@@ -15,9 +15,10 @@ impl Topography {
     /// \hat p_{\mathbf q} = \tfrac12 E^* |\mathbf q|\, \hat h_{\mathbf q} , \qquad \mathbf q \ne 0
     /// ```
     ///
-    /// as under the half-space `Spectral` of the crate `asperity`. The mean pressure is free, but must be at least the negative of the least
-    /// value of this field: from there on no pressure is negative and full contact is possible. The root mean square of
-    /// the field is E\* h'/2 with the spectral gradient, [`SpectralMoments::rms_full_contact_pressure`].
+    /// as under the half-space `Spectral` of the crate `asperity`. The mean pressure is free, but must be at least the
+    /// negative of the least value of this field: from there on no pressure is negative and full contact is possible.
+    /// The root mean square of the field is E\* h'/2 with the spectral gradient,
+    /// [`SpectralMoments::rms_full_contact_pressure`].
     ///
     /// # Errors
     ///

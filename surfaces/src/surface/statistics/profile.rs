@@ -8,8 +8,8 @@ use crate::surface::topography::{Filter, Topography, Trend};
 /// Heights of hills, and depths of dales, that count as elements of a profile, over Rz.
 const COUNTED: f64 = 0.1;
 
-/// Parameters of a profile by ISO 21920-2, in metres: with a cut-off wavelength those of its roughness (Ra, Rq, ...), without one those of the
-/// primary profile (Pa, Pq, ...).
+/// Parameters of a profile by ISO 21920-2, in metres: with a cut-off wavelength those of its roughness (Ra, Rq, ...),
+/// without one those of the primary profile (Pa, Pq, ...).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ProfileParameters {
@@ -29,16 +29,16 @@ pub struct ProfileParameters {
     pub rsk: f64,
     /// Kurtosis Rku, 3 for a normal distribution; NaN if the profile is flat.
     pub rku: f64,
-    /// Mean spacing RSm \[m\] of elements, from hill to hill; hills lower and dales less deep than a tenth of Rz are no elements. `None` where there are
-    /// fewer than two.
+    /// Mean spacing RSm \[m\] of elements, from hill to hill; hills lower and dales less deep than a tenth of Rz are no
+    /// elements. `None` where there are fewer than two.
     pub rsm: Option<f64>,
 }
 
 impl Topography {
     /// The roughness of a profile: of a surface of one row of nodes, without its tilt.
     ///
-    /// With a cut-off wavelength the waviness is taken off by the Gaussian filter, and half a cut-off at either end is not evaluated, where the filter sees
-    /// one side only.
+    /// With a cut-off wavelength the waviness is taken off by the Gaussian filter, and half a cut-off at either end is
+    /// not evaluated, where the filter sees one side only.
     ///
     /// ```
     /// use asperity_surfaces::Grid;
@@ -60,8 +60,8 @@ impl Topography {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a surface of several rows, and for a cut-off of more than half the profile; [`Error::NotPositive`] for one that is
-    /// not positive and finite.
+    /// [`Error::OutOfRange`] for a surface of several rows, and for a cut-off of more than half the profile;
+    /// [`Error::NotPositive`] for one that is not positive and finite.
     pub fn profile_parameters(&self, cutoff: Option<f64>) -> Result<ProfileParameters, Error> {
         let (nx, ny) = self.grid().shape();
         Error::require("number of rows of a profile", ny as f64, ny == 1, "1")?;
@@ -113,7 +113,8 @@ fn extent(heights: &[f64]) -> f64 {
     end - start
 }
 
-/// Steps between the places at which the profile rises through its mean line, from a dale that counts to a hill that does.
+/// Steps between the places at which the profile rises through its mean line, from a dale that counts to a hill that
+/// does.
 fn mean_spacing(heights: &[f64], counted: f64) -> Option<f64> {
     let mut rises: Vec<f64> = Vec::new();
     // Where it last rose through the mean line after a dale.
@@ -156,7 +157,8 @@ mod tests {
         for tilt in [0.0, 1e-8] {
             let sine = |x: f64| amplitude * (TAU * (x + 0.5) / wave).sin();
             let surface = profile(5000, |x| sine(x) + tilt * x)?;
-            // What a plane takes off a sine of whole waves is 6 / (π n) of its amplitude at most, n the number of waves.
+            // What a plane takes off a sine of whole waves is 6 / (π n) of its amplitude at most, n the number of
+            // waves.
             let close = |found: f64, expected: f64, tolerance: f64| {
                 assert!((found / expected - 1.0).abs() < tolerance, "{found:e} {expected:e}");
             };
@@ -173,7 +175,8 @@ mod tests {
         Ok(())
     }
 
-    /// A wave as long as the cut-off keeps half of its amplitude, and one of a tenth all but exp(−100 ln 2) of it; a long one is waviness.
+    /// A wave as long as the cut-off keeps half of its amplitude, and one of a tenth all but exp(−100 ln 2) of it; a
+    /// long one is waviness.
     #[test]
     fn the_cutoff_parts_roughness_from_waviness() -> Result<(), Error> {
         let cutoff = 800.0;
@@ -200,7 +203,8 @@ mod tests {
         Ok(())
     }
 
-    /// Ripples of less than a tenth of Rz are no elements; a saw tooth has a uniform distribution of heights: Rq = Rt / √12, Rku = 9/5.
+    /// Ripples of less than a tenth of Rz are no elements; a saw tooth has a uniform distribution of heights: Rq = Rt /
+    /// √12, Rku = 9/5.
     #[test]
     fn small_ripples_are_no_elements() -> Result<(), Error> {
         let ripple = |x: f64| 0.05e-6 * (TAU * x / 10.0).sin();

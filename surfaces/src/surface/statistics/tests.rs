@@ -118,7 +118,8 @@ fn densities_of_generated_surfaces() -> Result<(), Error> {
         let expected = TAU * TAU * spectrum.psd(bin.wavevector);
         let plateau = TAU * TAU * spectrum.psd(0.0 + TAU);
         // A ring spans 0.0012 of its wavevector, in which the density, of exponent 3.6, is curved: 3.6 × 4.6/24 of its
-        // square. Rings with the roll-off in them differ by half of 3.6 × 0.0012, and beyond the cut-off there is rounding.
+        // square. Rings with the roll-off in them differ by half of 3.6 × 0.0012, and beyond the cut-off there is
+        // rounding.
         let inside = (bin.wavevector * 0.05 / TAU - 1.0).abs() > 0.002;
         let tolerance = if (bin.wavevector * 0.25 / TAU - 1.0).abs() > 0.002 { 2e-6 } else { 3e-3 };
         assert!(

@@ -35,8 +35,9 @@ fn of_four(window: &Window) -> Window {
     correction(window, &(4.0 * test_chain::matrix(window))).window
 }
 
-/// The gap of node 2, or of node 4, closes at the approach 3, and the other one's later. Node 0 is in contact and reaches
-/// neither of them. The window, from the approach 1, says that node 2 is first; it closes at half the rate there.
+/// The gap of node 2, or of node 4, closes at the approach 3, and the other one's later. Node 0 is in contact and
+/// reaches neither of them. The window, from the approach 1, says that node 2 is first; it closes at half the rate
+/// there.
 fn settled(
     gaps: [f64; 2],
     times: [f64; 2],
@@ -63,8 +64,8 @@ fn check_events(settled: &Settled, expected: &[(usize, f64)]) {
 
 #[test]
 fn close_events_are_settled_by_their_gaps() -> Result<(), Error> {
-    // At the approach 3 node 4 touches, and the gap of node 2, 1/16, closes after 1/8. Gaps may be off by 0.04 · 0.25 · 0.5
-    // and 2 · 10⁻³ · 3, that is by 0.011; over the rates, and with 0.05 of 1/8 for the second.
+    // At the approach 3 node 4 touches, and the gap of node 2, 1/16, closes after 1/8. Gaps may be off by 0.04 · 0.25 ·
+    // 0.5 and 2 · 10⁻³ · 3, that is by 0.011; over the rates, and with 0.05 of 1/8 for the second.
     let (run, found) = settled([3.0625, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
     assert_eq!(run.timings.ties, 1);
     check_events(&found, &[(1, 2.0), (0, 2.125)]);
@@ -115,8 +116,8 @@ fn what_cannot_be_settled_stays() -> Result<(), Error> {
     Ok(())
 }
 
-/// Hands three events a thirty-second apart to be settled, the first of which truly touches at `first`; returns what was found, and
-/// the number of solutions.
+/// Hands three events a thirty-second apart to be settled, the first of which truly touches at `first`; returns what
+/// was found, and the number of solutions.
 fn three_settled(
     first: f64,
     (lines, step, error): ([[f64; 2]; 3], f64, f64),
@@ -131,8 +132,8 @@ fn three_settled(
 
 const DISTINCT: [[f64; 2]; 3] = [[9.0, 1.0], [7.0, 1.0], [5.0, 1.0]];
 
-/// Gaps may be off by more than events are apart, whatever is done: the first solution is not exact, the second is, for the first
-/// event; the third is for the second event.
+/// Gaps may be off by more than events are apart, whatever is done: the first solution is not exact, the second is, for
+/// the first event; the third is for the second event.
 #[test]
 fn solutions_go_on_while_neighbours_are_close() -> Result<(), Error> {
     let (found, solutions) = three_settled(3.0, (DISTINCT, 0.03125, 0.5))?;

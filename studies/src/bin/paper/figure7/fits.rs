@@ -11,8 +11,8 @@ pub(crate) const PAPER_EXPONENTIAL: (f64, f64, f64) = (-2.56, 2.26, 0.0021);
 pub(crate) const PAPER_LINE: (f64, f64) = (-8.93, -0.11);
 /// Greatest loads of the exponential fit: the paper does not state its range, so that each is judged.
 pub(crate) const LIGHT_LOADS: [f64; 3] = [2.5e-3, SMALL_LOAD, 1e-2];
-/// Greatest load of the fits of K, about the greatest at which the paper's exponential, with t = 0.0021, has not yet come to
-/// its end.
+/// Greatest load of the fits of K, about the greatest at which the paper's exponential, with t = 0.0021, has not yet
+/// come to its end.
 pub(crate) const SMALL_LOAD: f64 = 5e-3;
 /// Least load of the fits of K.
 pub(crate) const LEAST_LOAD: f64 = 1e-4;

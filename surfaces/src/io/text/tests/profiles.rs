@@ -26,7 +26,8 @@ fn columns_are_profiles() -> TestResult {
     Ok(())
 }
 
-/// A straight line stays one on even steps, and what happened is said; where a height is missing its neighbours between are too.
+/// A straight line stays one on even steps, and what happened is said; where a height is missing its neighbours between
+/// are too.
 #[test]
 fn uneven_steps_are_made_even() -> TestResult {
     let positions = [0.0, 1.0, 1.5, 3.0, 4.0, 6.0, 6.5, 7.0];

@@ -6,7 +6,8 @@ use nalgebra::DMatrix;
 
 use crate::surface::fourier::Waves;
 
-/// Waves so far apart along either axis, or nearer, may be smeared over each other: Hann's window reaches two waves far.
+/// Waves so far apart along either axis, or nearer, may be smeared over each other: Hann's window reaches two waves
+/// far.
 const NEAR: i64 = 2;
 
 /// Waves so far apart are not, and what they have in common is their place in the spectrum: a law that does not hold, a

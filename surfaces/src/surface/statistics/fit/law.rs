@@ -20,8 +20,8 @@ const TRIALS: usize = 100;
 /// Steps of the golden section, each of which leaves 0.62 of an interval: to 10⁻⁸ of it.
 const SECTIONS: usize = 40;
 
-/// Steps of the iteration for level and exponent: it converges quadratically, but from far above the densities, as where
-/// some of them are rounding, each step gains a factor of e.
+/// Steps of the iteration for level and exponent: it converges quadratically, but from far above the densities, as
+/// where some of them are rounding, each step gains a factor of e.
 const STEPS: usize = 100;
 
 /// The mean density of some waves of the same length.
@@ -197,8 +197,8 @@ impl Line {
         squares.sum::<f64>() / rings.len().saturating_sub(parameters).max(1) as f64
     }
 
-    /// The law, with standard errors from the inverse of Fisher's information, as if waves were independent and the mean
-    /// square of their relative residuals 1.
+    /// The law, with standard errors from the inverse of Fisher's information, as if waves were independent and the
+    /// mean square of their relative residuals 1.
     fn with_errors(self, rings: &[Ring], dispersion: f64, bent: bool) -> Result<Law, Error> {
         let [plateau, exponent] = self.parameters.into();
         let mut information = Matrix3::zeros();

@@ -23,14 +23,15 @@ const REACH: f64 = 0.15;
 /// … so many at least on either side, …
 const FEWEST_WAVES: f64 = 32.0;
 
-/// … as a fall of the mean density by this factor. The steepest power law, H = 1, falls by 1.8, and of 16 + 16 independent
-/// waves one mean in a million is 11 times the other.
+/// … as a fall of the mean density by this factor. The steepest power law, H = 1, falls by 1.8, and of 16 + 16
+/// independent waves one mean in a million is 11 times the other.
 const FALL: f64 = 20.0;
 
 /// Falls by more are alike: behind them is the rounding of the transform, and the first of them is the cut-off.
 const TO_NOTHING: f64 = 1e4;
 
-/// Rings at the long end with less than this part of the greatest density have no power: they lie beyond a long cut-off.
+/// Rings at the long end with less than this part of the greatest density have no power: they lie beyond a long
+/// cut-off.
 const NO_POWER: f64 = 1e-3;
 
 /// A number with its standard error.
@@ -79,8 +80,8 @@ impl Topography {
     /// Level a map that is not periodic, and put a [window](Self::window) on it, before: without, the jump at its
     /// border has a power law of its own, and the dispersion shows it. The window smears each wave over its neighbours:
     /// so fewer of them are independent, which the standard errors count, and where the spectrum is steep the longest
-    /// waves seem too long. Without a roll-off H comes out too great for it, by 0.02 with Hann's window on 128 × 128 nodes,
-    /// half of its standard error.
+    /// waves seem too long. Without a roll-off H comes out too great for it, by 0.02 with Hann's window on 128 × 128
+    /// nodes, half of its standard error.
     ///
     /// # How
     ///
@@ -94,11 +95,11 @@ impl Topography {
     ///   residuals are those of C and not of its logarithm. This is Whittle's likelihood: the
     ///   density of one wave of a Gaussian surface is distributed exponentially, the mean logarithm of which is not the
     ///   logarithm of the mean.
-    /// * Standard errors are those of independent waves (the inverse of Fisher's information), times the root of what the
-    ///   relative residuals of waves say: their mean square and their covariances with the waves up to two further along
-    ///   either axis, as far as these exceed those with waves four to seven further; or times the root of the dispersion,
-    ///   if that is more. With Hann's window the first is 35²/18² = 3.8. What they do not know is how far the spectrum of a real
-    ///   surface is from the law: a dispersion well above 1 shows that.
+    /// * Standard errors are those of independent waves (the inverse of Fisher's information), times the root of what
+    ///   the relative residuals of waves say: their mean square and their covariances with the waves up to two further
+    ///   along either axis, as far as these exceed those with waves four to seven further; or times the root of the
+    ///   dispersion, if that is more. With Hann's window the first is 35²/18² = 3.8. What they do not know is how far
+    ///   the spectrum of a real surface is from the law: a dispersion well above 1 shows that.
     /// * There is a roll-off if the plateau improves the likelihood beyond what it would by chance
     ///   (twice the difference of its logarithms, over the dispersion, is above 10) and is three rings long.
     ///

@@ -62,7 +62,8 @@ fn gaussian(parts: u64, number: u64, hurst: f64, grid: &Grid) -> Result<Topograp
     Topography::new(*grid, sum)
 }
 
-/// Standard errors are what they are called: 68 of 100 estimates lie within one of the truth, and the mean error is none.
+/// Standard errors are what they are called: 68 of 100 estimates lie within one of the truth, and the mean error is
+/// none.
 #[test]
 fn standard_errors_cover() -> Result<(), Error> {
     let grid = Grid::square(80, 1.0)?;
@@ -85,8 +86,8 @@ fn standard_errors_cover() -> Result<(), Error> {
     for (name, (covered, sum)) in [("H", hurst), ("λ_r", rolloff)] {
         let share = f64::from(covered) / f64::from(surfaces);
         let mean = sum / f64::from(surfaces);
-        // A share of 0.68 of 150 has a standard deviation of 0.038: three of them, and what small numbers of waves do to
-        // errors of first order.
+        // A share of 0.68 of 150 has a standard deviation of 0.038: three of them, and what small numbers of waves do
+        // to errors of first order.
         assert!((share - 0.68).abs() < 0.15, "{name} {share}");
         // In standard errors; of 150, their mean has a standard deviation of 0.08.
         assert!(mean.abs() < 0.4, "{name} {mean}");
