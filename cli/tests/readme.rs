@@ -90,7 +90,15 @@ fn with_files(page: &str) -> Scratch {
     // A format is known by its content.
     let rough = read_npy(folder.join("rough.npy")).unwrap();
     write_x3p(folder.join("ground.x3p"), &Grid::square(48, 1e-2).unwrap(), &rough).unwrap();
-    fs::copy(folder.join("ground.x3p"), folder.join("ground.sdf")).unwrap();
+    for name in ["ground.sdf", "shaft.sdf", "bush.sdf"] {
+        fs::copy(folder.join("ground.x3p"), folder.join(name)).unwrap();
+    }
+    let line = |i: u32| {
+        let (x, wave) = (f64::from(i), |length: f64| 0.2 * (f64::from(i) / length).sin());
+        format!("{}; {}\n", 0.02 * x, wave(1.7) + wave(11.3))
+    };
+    let profile: String = (0..400).map(line).collect();
+    fs::write(folder.join("roller.csv"), format!("x [mm]; z [µm]\n{profile}")).unwrap();
     let (side, radius) =
         if page == "coated_and_thin_bodies" { (160e-6, 5e-3) } else { (4e-3, 50e-3) };
     let ball = DMatrix::from_fn(64, 64, |ix, iy| {
