@@ -25,7 +25,7 @@ use crate::contact::ContactTarget;
 /// let half_space = Boussinesq::new(grid, 100e9)?;
 /// let mut solver = FixedLoadSolver::new(&surface, &half_space)?;
 /// for solution in solver.sweep([10.0, 20.0, 40.0].map(ContactTarget::Load)) {
-///     let state = solution?.state;
+///     let state = solution?.contact;
 ///     println!("{} N: {} nodes, {} m", state.load, state.contact_nodes, state.mean_gap);
 /// }
 /// # Ok(())

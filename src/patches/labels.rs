@@ -48,8 +48,8 @@ pub struct PatchLoad {
 /// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
 /// let solved = FixedLoadSolver::new(&SelfAffine::zhang2020(1), &half_space)?.solve(100.0)?;
 /// let (grid, boundary) = (half_space.grid(), half_space.boundary());
-/// let patches = Patches::new(&solved.contact_map, &grid, boundary, Connectivity::Eight)?;
-/// let loads = patches.loads(&solved.pressure)?;
+/// let patches = Patches::new(&solved.fields.contact_map, &grid, boundary, Connectivity::Eight)?;
+/// let loads = patches.loads(&solved.fields.pressure)?;
 /// for (patch, carried) in patches.patches().iter().zip(&loads) {
 ///     println!("{} nodes carry {} N", patch.nodes, carried.load);
 /// }

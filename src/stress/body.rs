@@ -23,9 +23,9 @@ use crate::{Boundary, Error, Grid, InfluenceKernel, StressError};
 /// let kernel = Boussinesq::new(grid, 115e9)?;
 /// let ball = FixedLoadSolver::new(&Paraboloid::new(50e-3)?, &kernel)?.solve(1000.0)?;
 /// let steel = Subsurface::of(&kernel, 0.3)?;
-/// let stress = steel.at_depth(&ball.pressure, 0.33e-3)?;
+/// let stress = steel.at_depth(&ball.fields.pressure, 0.33e-3)?;
 /// let von_mises = stress.map(Measure::VonMises).max();
-/// assert!((von_mises / ball.pressure.max() - 0.62).abs() < 0.02);
+/// assert!((von_mises / ball.fields.max_pressure() - 0.62).abs() < 0.02);
 /// # Ok(())
 /// # }
 /// ```

@@ -240,6 +240,12 @@ fn is_map(found: &MeasuredSurface, map: &Map) -> bool {
     let is_same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
     let (nx, ny) = found.heights.shape();
     let written = |ix: usize, iy: usize| map.heights[iy * map.nx + ix];
+    if found.understood.starts_with("a profile") {
+        // One column is a profile, whose positions are along x.
+        let heights = (0..map.ny).map(|iy| written(0, iy));
+        let in_order = heights.zip(&found.heights).all(|(a, b)| is_same(a, *b));
+        return map.nx == 1 && (nx, ny) == (map.ny, 1) && in_order;
+    }
     let columns =
         if found.understood.contains("empty cells") { 0..=map.nx.abs_diff(nx) } else { 0..=0 };
     ny == map.ny
