@@ -142,6 +142,8 @@ fn matrix(map: &Map, dialect: &Dialect, rng: &mut ChaCha8Rng) -> Written {
         (false, _) => (step, step),
     };
     let (along_x, along_y) = (rng.random_bool(0.25), rng.random_bool(0.25));
+    // Above a single column a position is nothing but one more height.
+    let along_x = along_x && nx > 1;
     if along_y {
         for (k, row) in rows.iter_mut().enumerate() {
             row.insert(0, dialect.cell(start + steps.1 * k as f64));
@@ -241,10 +243,10 @@ fn is_map(found: &MeasuredSurface, map: &Map) -> bool {
     let (nx, ny) = found.heights.shape();
     let written = |ix: usize, iy: usize| map.heights[iy * map.nx + ix];
     if found.understood.starts_with("a profile") {
-        // One column is a profile, whose positions are along x.
+        // By convention two columns are positions along x and heights, and one column is heights.
         let heights = (0..map.ny).map(|iy| written(0, iy));
         let in_order = heights.zip(&found.heights).all(|(a, b)| is_same(a, *b));
-        return map.nx == 1 && (nx, ny) == (map.ny, 1) && in_order;
+        return map.nx == 2 || map.nx == 1 && (nx, ny) == (map.ny, 1) && in_order;
     }
     let columns =
         if found.understood.contains("empty cells") { 0..=map.nx.abs_diff(nx) } else { 0..=0 };
