@@ -252,8 +252,7 @@ impl LoadingPath {
     }
 
     /// What solves on the contact; `None` where the path goes on, or has begun, without a factor.
-    #[must_use]
-    pub fn linear_updater(&self) -> Option<&dyn LinearUpdater> {
+    pub(super) fn linear_updater(&self) -> Option<&dyn LinearUpdater> {
         match &self.phase {
             Phase::Factor { updater, .. } => Some(&**updater),
             Phase::Iterations(_) => None,
