@@ -148,8 +148,12 @@ impl Ties<'_> {
 
     /// Whether an event's error is too great in itself.
     fn is_poor(&self, event: usize) -> bool {
-        let Settled { events, errors } = &self.settled;
-        errors[event] > POOR * (self.beginning.approach + events[event].time)
+        self.settled.errors[event] > self.greatest_error(event)
+    }
+
+    /// The greatest error that an event may have in itself.
+    fn greatest_error(&self, event: usize) -> f64 {
+        POOR * (self.beginning.approach + self.settled.events[event].time)
     }
 
     /// The last event of the run of close neighbours that begins here, if there is anything to settle.
@@ -318,7 +322,9 @@ impl Ties<'_> {
             return 0.0;
         }
         let Settled { events, errors } = &self.settled;
+        // Errors may be those of events far behind: the first one must not stay poor.
         let least = errors[first..=last].iter().copied().fold(f64::INFINITY, f64::min);
+        let least = least.min(self.greatest_error(first));
         let rates = events[first..=last].iter().map(|event| self.window.closing(event));
         OF_ERROR * least * rates.fold(f64::INFINITY, f64::min)
     }
