@@ -38,7 +38,7 @@ use asperity::creep::{
     ControlHistory, Creep, CycleSettings, PiecewiseLinear, Prony, Relaxation, Steps,
     ViscoelasticBed,
 };
-use asperity::patches::{Connectivity, Percolation, contact_sequence};
+use asperity::patches::{Connectivity, Percolation};
 use asperity::surface::Amplitude;
 use asperity::{
     Boundary, Error, Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine, plane_strain_modulus,
@@ -70,8 +70,7 @@ fn main() -> Result<(), Error> {
             1e-6 * pressure.max()
         );
     }
-    let events = history.states().iter().map(|state| (state.event, state.node));
-    let contact = contact_sequence(grid, events)?;
+    let contact = history.contact_sequence(grid)?;
     let found = Percolation::of(&contact, Boundary::Periodic, Connectivity::Eight);
     let times = creep.times();
     match found.leak_x.and_then(|nodes| times.get(nodes - 1)) {
@@ -98,9 +97,8 @@ fn main() -> Result<(), Error> {
     let mut contact = ViscoelasticBed::new(&bed, &rubber)?;
     let states = contact.follow(&ControlHistory::Load(course), &times)?;
     for time in [61.0, 62.0, 122.0] {
-        let state =
-            states.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
-        if let Some(state) = state {
+        // The last state up to then: every corner of the load's course has one of its own.
+        if let Some(state) = states.iter().rfind(|state| state.time <= time) {
             println!("after {time} s {:.3} % in contact", 100.0 * state.contact_area_fraction);
         }
     }

@@ -24,7 +24,7 @@
 //! around the grid    no channel along y               39.63         48.45           0.261
 //! ```
 
-use asperity::patches::{Connectivity, Percolation, contact_sequence};
+use asperity::patches::{Connectivity, Percolation};
 use asperity::surface::Amplitude;
 use asperity::{Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine};
 
@@ -40,7 +40,7 @@ fn main() -> Result<(), Error> {
     let mut path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.6).build()?;
     let history = path.run()?;
     let events = history.events();
-    let contact = contact_sequence(grid, events.iter().map(|state| (state.event, state.node)))?;
+    let contact = history.contact_sequence(grid)?;
 
     println!(
         "which way          event                       load [MPa]   contact [%]   mean gap [µm]"

@@ -14,5 +14,6 @@ pub use certificate::Certificate;
 pub(crate) use certificate::{Conditions, ErrorLength};
 pub use fields::ContactFields;
 pub use sequence::ContactSequence;
+pub(crate) use sequence::node_of;
 pub use state::{ContactState, PlasticState};
 pub use target::ContactTarget;

@@ -181,6 +181,14 @@ impl ContactSequence {
     }
 }
 
+/// The index of a node of a grid.
+pub(crate) fn node_of(grid: &Grid, (ix, iy): (usize, usize)) -> Result<usize, Error> {
+    grid.node(ix, iy).ok_or_else(|| Error::NodeOutOfGrid {
+        node: iy.saturating_mul(grid.nx()).saturating_add(ix),
+        nodes: grid.nodes(),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,9 +1,8 @@
 //! The leak rate along a path.
 
 use super::{CriticalConstriction, Leak, Seal};
-use crate::contact::ContactSequence;
 use crate::loading::History;
-use crate::patches::{Connectivity, Percolation, contact_sequence};
+use crate::patches::{Connectivity, Percolation};
 use crate::surface::Axis;
 use crate::{ContactEvent, Error, LoadingPath, LoadingState};
 
@@ -64,8 +63,8 @@ impl Seal {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of [`contact_sequence`] for
-    /// states that are no path.
+    /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of [`History::contact_sequence`]
+    /// for states that are no path.
     pub fn curve(
         &self,
         path: &mut LoadingPath,
@@ -74,7 +73,7 @@ impl Seal {
     ) -> Result<LeakCurve, Error> {
         Error::require("number of states", states as f64, states > 1, "two or more")?;
         let events = history.states();
-        let closing = closing(events, path, self.along())?;
+        let closing = closing(history, path, self.along())?;
         let closing = self.closing_by_gap(events, closing, path)?;
         // Those that may leak: of states at one approach too, since each has its contact.
         let leaking = closing.unwrap_or(events.len());
@@ -129,13 +128,8 @@ impl Seal {
 }
 
 /// The place among the states of that at which the last channel along an axis closes.
-fn closing(
-    states: &[LoadingState],
-    path: &LoadingPath,
-    along: Axis,
-) -> Result<Option<usize>, Error> {
-    let events = states.iter().map(|state| (state.event, state.node));
-    let contact: ContactSequence = match contact_sequence(path.grid(), events) {
+fn closing(history: &History, path: &LoadingPath, along: Axis) -> Result<Option<usize>, Error> {
+    let contact = match history.contact_sequence(path.grid()) {
         Ok(contact) => contact,
         // A channel may open again: there is no last one.
         Err(Error::NodeLeaves { .. }) => return Ok(None),
@@ -147,7 +141,8 @@ fn closing(
         Axis::X => found.leak_x,
         Axis::Y => found.leak_y,
     };
-    let touches = states.iter().enumerate().filter(|(_, s)| s.event == ContactEvent::Touch);
+    let touches =
+        history.states().iter().enumerate().filter(|(_, s)| s.event == ContactEvent::Touch);
     let mut places = touches.map(|(place, _)| place);
     Ok(nodes.and_then(|nodes| places.nth(nodes.checked_sub(1)?)))
 }

@@ -282,7 +282,7 @@ impl Exact {
                 return self.commit(run, updater, trial);
             }
         }
-        let begun = run.mark();
+        let count = run.contact.len();
         run.join(updater, &self.window)?;
         let joined = self.window.events().iter().map(|event| event.position);
         let joined: Vec<usize> = joined.collect();
@@ -297,11 +297,10 @@ impl Exact {
             if dropped == 0 {
                 break;
             }
-            let mark = run.mark().without_last(dropped);
-            run.roll_back(&mark, |problem, contact| updater.truncate(problem, contact))?;
+            run.cut(updater, run.contact.len() - dropped)?;
         }
         if let Some(error) = self.pulled(run, updater)? {
-            run.roll_back(&begun, |problem, contact| updater.truncate(problem, contact))?;
+            run.cut(updater, count)?;
             return Err(error);
         }
         self.log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());

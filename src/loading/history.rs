@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::limits::{Limits, LoadingEnd};
 use super::window_end::WindowEnd;
 use super::{ContactEvent, LoadingState};
-use crate::contact::{ContactState, ContactTarget};
+use crate::contact::{ContactSequence, ContactState, ContactTarget, node_of};
 use crate::kernel::Layering;
 use crate::{Error, Grid};
 
@@ -103,6 +103,28 @@ impl History {
             Some((last, events)) if last.event == ContactEvent::Limit => events,
             _ => &self.states,
         }
+    }
+
+    /// The nodes of a grid in the order in which they touched. Begin with first touch: nodes whose event is missing
+    /// count as out of contact.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NodeLeaves`] if one leaves, with the number of the state, from 1 on; [`Error::NodeOutOfGrid`], and
+    /// [`Error::AlreadyInContact`].
+    pub fn contact_sequence(&self, grid: Grid) -> Result<ContactSequence, Error> {
+        let mut contact = ContactSequence::new(grid);
+        for (state, number) in self.states.iter().zip(1..) {
+            match state.event {
+                ContactEvent::Touch => contact.push(node_of(&grid, state.node)?)?,
+                ContactEvent::Release => {
+                    let (ix, iy) = state.node;
+                    return Err(Error::NodeLeaves { ix, iy, event: number });
+                }
+                ContactEvent::Yield | ContactEvent::Limit => (),
+            }
+        }
+        Ok(contact)
     }
 
     /// The path that a grid would have had with these targets as limits: its states up to the first of them, with the
@@ -280,6 +302,28 @@ mod tests {
         for outside in [1.1, 0.6, f64::NAN] {
             assert_eq!(step_at(outside), None);
         }
+    }
+
+    #[test]
+    fn a_path_with_nodes_that_leave_has_no_order() -> Result<(), Error> {
+        use ContactEvent::{Limit, Release, Touch};
+        let grid = Grid::new(3, 2, 1.0, 1.0)?;
+        let contact = history().states()[0].contact;
+        let order = |events: &[(ContactEvent, (usize, usize))]| {
+            let states =
+                events.iter().map(|&(event, node)| LoadingState::new(1, event, node, contact));
+            states.collect::<History>().contact_sequence(grid)
+        };
+        let contact = order(&[(Touch, (1, 1)), (Touch, (2, 0)), (Limit, (2, 0))])?;
+        assert_eq!(contact.order(), [4, 2]);
+        let left = order(&[(Touch, (1, 1)), (Touch, (2, 0)), (Release, (1, 1))]);
+        assert!(matches!(left, Err(Error::NodeLeaves { ix: 1, iy: 1, event: 3 })));
+        let twice = order(&[(Touch, (1, 1)), (Touch, (1, 1))]);
+        assert!(matches!(twice, Err(Error::AlreadyInContact { ix: 1, iy: 1 })));
+        for node in [(3, 0), (0, 2), (usize::MAX, 0), (0, usize::MAX)] {
+            assert!(matches!(order(&[(Touch, node)]), Err(Error::NodeOutOfGrid { .. })));
+        }
+        Ok(())
     }
 
     /// Three states of 1, 2 and 4 of ten nodes, at loads of 1, 2 and 4, from which approach and mean gap change by 1/2

@@ -302,8 +302,13 @@ fn rest(run: &LoadingRun, count: usize, end: usize) -> Rest {
     let nodes = run.problem.grid().nodes();
     let Some(plastic) = &run.plastic else {
         let rest = Rest::growing(nodes, count, end);
-        let has_windows = run.problem.growth() != ContactGrowth::Unknown;
-        return if has_windows { rest } else { rest.stepwise() };
+        if run.problem.growth() != ContactGrowth::Unknown {
+            return rest;
+        }
+        // As so far.
+        let steps = run.steps();
+        let releases = (steps - count) / 2;
+        return rest.with_releases(releases as f64 / steps.max(1) as f64);
     };
     // Of the nodes that are to touch most yield as well; those that have not yet leave the factor as others come.
     let yielded = plastic.count();

@@ -5,7 +5,7 @@ use super::history::History;
 use super::path::{LoadingPath, Procedure};
 use super::snapshot::{Snapshot, not_on_path};
 use super::state::{ContactEvent, LoadingState};
-use crate::contact::ContactSequence;
+use crate::contact::{ContactSequence, node_of};
 use crate::updater::Left;
 use crate::{Error, Grid};
 
@@ -102,7 +102,7 @@ pub(crate) fn replay(
         let is_last = k + 1 == states.len();
         if state.event != ContactEvent::Limit {
             step += 1;
-            let node = node_of(grid, state)?;
+            let node = node_of(grid, state.node)?;
             match state.event {
                 ContactEvent::Release => {
                     contact.remove(node)?;
@@ -148,15 +148,6 @@ pub(crate) fn replay(
         }
     }
     Ok(Replayed { contact, elastic })
-}
-
-/// The node of a state.
-fn node_of(grid: &Grid, state: &LoadingState) -> Result<usize, Error> {
-    let (ix, iy) = state.node;
-    grid.node(ix, iy).ok_or_else(|| Error::NodeOutOfGrid {
-        node: iy.saturating_mul(grid.nx()).saturating_add(ix),
-        nodes: grid.nodes(),
-    })
 }
 
 /// States that no path has yielded in this order.

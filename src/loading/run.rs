@@ -92,23 +92,6 @@ pub(super) struct LoadingRun {
     pub(super) timings: LoadingTimings,
 }
 
-/// Where a path was before a step that may fail or be contradicted: [`LoadingRun::roll_back`] goes back there.
-#[derive(Debug, Clone, Copy)]
-#[must_use]
-pub(super) struct Mark {
-    /// Nodes in contact.
-    pub(super) count: usize,
-    pub(super) scalars: PathScalars,
-}
-
-impl Mark {
-    /// The same with the last nodes of the contact left out.
-    pub(super) fn without_last(mut self, nodes: usize) -> Self {
-        self.count = self.count.saturating_sub(nodes);
-        self
-    }
-}
-
 /// Where a path was before trials that it followed.
 #[derive(Debug)]
 pub(super) struct Before {
@@ -183,21 +166,14 @@ impl LoadingRun {
         }
     }
 
-    /// Begins a step.
-    pub(super) fn mark(&self) -> Mark {
-        Mark { count: self.contact.len(), scalars: self.scalars }
-    }
-
-    /// Takes a step back, or the nodes of its last events if the mark says so. Whoever solves on the contact goes back
-    /// by `cut`.
-    pub(super) fn roll_back(
+    /// Takes all but the first `count` nodes back out of the contact, before anything else has followed them.
+    pub(super) fn cut(
         &mut self,
-        mark: &Mark,
-        cut: impl FnOnce(&Problem, &ContactSequence) -> Result<(), Error>,
+        updater: &mut dyn LinearUpdater,
+        count: usize,
     ) -> Result<(), Error> {
-        self.contact.truncate(mark.count);
-        self.scalars = mark.scalars;
-        cut(&self.problem, &self.contact)
+        self.contact.truncate(count);
+        updater.truncate(&self.problem, &self.contact)
     }
 
     /// All that a trial changes.
@@ -348,7 +324,7 @@ impl LoadingRun {
         updater: &mut dyn LinearUpdater,
         window: &Window,
     ) -> Result<(), Error> {
-        let mark = self.mark();
+        let count = self.contact.len();
         let joined = window
             .touched()
             .try_for_each(|node| self.contact.push(node))
@@ -357,7 +333,7 @@ impl LoadingRun {
         joined.map_err(|error| {
             // The updater may have taken them in: both go back, for the fields of the states up to there. One that
             // cannot says so when it is asked for them.
-            let _ = self.roll_back(&mark, |problem, contact| updater.truncate(problem, contact));
+            let _ = self.cut(updater, count);
             self.memory.in_all(error)
         })
     }

@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 
 use super::lattice::Lattice;
-use super::order::node_of;
 use super::{Connectivity, Perimeter};
+use crate::contact::node_of;
 use crate::loading::ContactEvent;
 use crate::{Boundary, Error, Grid};
 
@@ -70,10 +70,10 @@ impl ContactEdge {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a node outside the grid; [`Error::AlreadyInContact`] and [`Error::NotInContact`] for
-    /// one that cannot join or leave.
+    /// [`Error::NodeOutOfGrid`]; [`Error::AlreadyInContact`] and [`Error::NotInContact`] for one that cannot join or
+    /// leave.
     pub fn follow(&mut self, event: ContactEvent, (ix, iy): (usize, usize)) -> Result<(), Error> {
-        let node = node_of(&self.grid, ix, iy)?;
+        let node = node_of(&self.grid, (ix, iy))?;
         match (event, self.in_contact[node]) {
             (ContactEvent::Touch, true) => return Err(Error::AlreadyInContact { ix, iy }),
             (ContactEvent::Release | ContactEvent::Yield, false) => {

@@ -18,15 +18,14 @@
 //!
 //! ```
 //! use asperity::loading::History;
-//! use asperity::patches::{Connectivity, PatchHistory, Percolation, contact_sequence};
+//! use asperity::patches::{Connectivity, PatchHistory, Percolation};
 //! use asperity::{Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine};
 //!
 //! # fn main() -> Result<(), asperity::Error> {
 //! let half_space = PeriodicBoussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).build()?;
 //! let history = path.run()?;
-//! let events = history.states().iter().map(|state| (state.event, state.node));
-//! let contact = contact_sequence(path.grid(), events)?;
+//! let contact = history.contact_sequence(path.grid())?;
 //!
 //! let boundary = half_space.boundary();
 //! for (patches, state) in PatchHistory::new(&contact, boundary, Connectivity::Four).zip(history.states()) {
@@ -43,7 +42,7 @@
 //!
 //! With a kernel that lets nodes leave the contact there is no order of contact: a patch that loses a node may fall
 //! into several, which neither disjoint sets nor a tree of mergers can follow, and a channel that was closed may open
-//! again. [`contact_sequence`] refuses such a path rather than give half an answer. Single states are answered all
+//! again. [`History::contact_sequence`](crate::loading::History::contact_sequence) refuses such a path rather than give half an answer. Single states are answered all
 //! the same: [`Patches`] takes any contact map, and [`ContactEdge`] follows nodes that leave.
 //!
 //! # Cost
@@ -52,6 +51,7 @@
 //! On a grid of 512 × 512 nodes, in random order to full contact, each of [`PatchHistory`], [`Percolation`] and
 //! [`MergeTree`] takes 0.1 to 0.2 s.
 
+mod activation;
 mod connectivity;
 mod constriction;
 mod distribution;
@@ -62,12 +62,12 @@ mod history;
 mod labels;
 mod lattice;
 mod merge_tree;
-mod order;
 mod percolation;
 mod perimeter;
 #[cfg(test)]
 mod tests;
 
+pub use activation::activation_map;
 pub use connectivity::Connectivity;
 pub use constriction::{Constriction, constriction};
 pub use distribution::{FieldDistribution, gap_distribution, pressure_distribution};
@@ -76,6 +76,5 @@ pub use histogram::{Bins, Histogram};
 pub use history::{PatchEvent, PatchHistory, PatchState};
 pub use labels::{Patch, PatchLoad, Patches};
 pub use merge_tree::{Branch, MergeTree, Merger};
-pub use order::{activation_map, contact_sequence};
 pub use percolation::Percolation;
 pub use perimeter::Perimeter;

@@ -13,7 +13,7 @@ use crate::contact::{ContactState, PlasticState};
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::io::write_whole;
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
-use crate::patches::{Connectivity, PatchHistory, PatchState, activation_map, contact_sequence};
+use crate::patches::{Connectivity, PatchHistory, PatchState, activation_map};
 use crate::surface::HeightMap;
 use crate::{Error, FileError, Grid};
 
@@ -179,8 +179,7 @@ impl LoadingRecord {
     /// Number of patches, nodes of the largest one and length of all edges \[m\] at each state, 4-connected; nothing
     /// where nodes leave the contact.
     fn write_patches(&self, archive: &mut ArchiveWriter<impl Write + Seek>) -> std::io::Result<()> {
-        let events = self.states().iter().map(|state| (state.event, state.node));
-        let Ok(contact) = contact_sequence(self.grid, events) else {
+        let Ok(contact) = self.history.contact_sequence(self.grid) else {
             return Ok(());
         };
         let patches = PatchHistory::new(&contact, self.kernel.boundary, Connectivity::Four);

@@ -5,7 +5,7 @@ use asperity::creep::{Creep, PiecewiseLinear, Prony, Relaxation};
 use asperity::joint::{Conduction, InterfaceRow, InterfaceTable};
 use asperity::kernel::Theory;
 use asperity::leak::Seal;
-use asperity::patches::{Connectivity, PatchHistory, Patches, Percolation, contact_sequence};
+use asperity::patches::{Connectivity, PatchHistory, Patches, Percolation};
 use asperity::slip::{Friction, PartialSlip, SlipZone};
 use asperity::surface::Axis;
 use asperity::{ContactEvent, Error, Grid, JointError, LoadingSolver, LoadingState};
@@ -124,8 +124,7 @@ pub(super) fn patches(pressed: &mut Pressed<'_>) -> Result<(), Error> {
         found.sort_unstable();
         assert_eq!(found, sizes, "{name}, state {}", state.step);
     }
-    let events = pressed.history.states().iter().map(|state| (state.event, state.node));
-    let contact = contact_sequence(grid, events)?;
+    let contact = pressed.history.contact_sequence(grid)?;
     for state in PatchHistory::new(&contact, boundary, Connectivity::Four) {
         let map = contact.map_at(state.step);
         let flood = Flood { map: &map, repeats, cut: None };

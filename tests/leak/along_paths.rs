@@ -2,7 +2,7 @@
 
 use asperity::leak::Seal;
 use asperity::loading::History;
-use asperity::patches::{Connectivity, Percolation, contact_sequence};
+use asperity::patches::{Connectivity, Percolation};
 use asperity::surface::Axis;
 use asperity::{
     Boussinesq, ContactTarget, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
@@ -30,8 +30,7 @@ fn leaks_end_where_the_last_channel_closes() {
     let kernels: [&dyn InfluenceKernel; 2] = [&free, &periodic];
     for kernel in kernels {
         let (mut path, history) = path(kernel, 1.0);
-        let events = history.states().iter().map(|state| (state.event, state.node));
-        let contact = contact_sequence(grid(), events).unwrap();
+        let contact = history.contact_sequence(grid()).unwrap();
         let found = Percolation::of(&contact, kernel.boundary(), Connectivity::Eight);
         for (axis, closing) in [(Axis::X, found.leak_x), (Axis::Y, found.leak_y)] {
             let seal = Seal::new(1e-3, 1e5, axis).unwrap();
@@ -152,8 +151,7 @@ fn the_gap_seals_when_a_flood_of_each_state_says_so() {
             let builder = LoadingSolver::builder(&surface, &*half_space).max_area_fraction(0.6);
             let mut path = builder.build().unwrap();
             let history: History = path.by_ref().collect::<Result<_, Error>>().unwrap();
-            let events = history.events().iter().map(|state| (state.event, state.node));
-            let contact = contact_sequence(grid, events).unwrap();
+            let contact = history.contact_sequence(grid).unwrap();
             for along in [Axis::X, Axis::Y] {
                 let mut is_open = vec![true; grid.nodes()];
                 let closes = |&node: &usize| {

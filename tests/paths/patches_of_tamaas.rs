@@ -1,6 +1,6 @@
 //! Patches of every state of a path against those that tamaas finds.
 
-use asperity::patches::{Connectivity, PatchHistory, contact_sequence};
+use asperity::patches::{Connectivity, PatchHistory};
 use asperity::{Boundary, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq};
 use asperity_testing::table;
 
@@ -13,8 +13,7 @@ fn every_state_has_the_patches_that_tamaas_counts() {
     let heights = surface("periodic_32x24");
     let kernel = PeriodicBoussinesq::new(Grid::new(32, 24, 2e-5, 3e-5).unwrap(), 1.0).unwrap();
     let mut path = LoadingSolver::builder(&heights, &kernel).build().unwrap();
-    let events = path.by_ref().map(Result::unwrap).map(|state| (state.event, state.node));
-    let contact = contact_sequence(kernel.grid(), events).unwrap();
+    let contact = path.run().unwrap().contact_sequence(kernel.grid()).unwrap();
     let mut history = PatchHistory::new(&contact, Boundary::Periodic, Connectivity::Four);
     let mut states = 0;
     for row in table::read(file) {

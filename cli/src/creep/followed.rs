@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::bed::Bed;
 use asperity::creep::{ControlHistory, Creep, CreepState, Relaxation, ViscoelasticBed};
-use asperity::patches::{Connectivity, contact_sequence};
+use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
 use asperity::{BedError, ContactEvent, CreepError, Error};
 use asperity_cli::number::{at_least, quantity};
@@ -65,8 +65,7 @@ impl<'a> Followed<'a> {
         connectivity: Connectivity,
     ) -> Result<[Passage<f64>; 4], Error> {
         let states = record.states();
-        let events = states.iter().map(|state| (state.event, state.node));
-        let contact = contact_sequence(record.grid(), events)?;
+        let contact = record.history().contact_sequence(record.grid())?;
         // The states at which nodes touch, among all.
         let touches = states.iter().enumerate();
         let touches = touches.filter(|(_, state)| state.event == ContactEvent::Touch);

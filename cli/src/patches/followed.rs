@@ -1,6 +1,6 @@
 //! The patches of a path from state to state.
 
-use asperity::patches::{Connectivity, MergeTree, PatchHistory, PatchState, contact_sequence};
+use asperity::patches::{Connectivity, MergeTree, PatchHistory, PatchState};
 use asperity::record::LoadingRecord;
 use asperity::{ContactEvent, Error, LoadingState};
 
@@ -22,9 +22,7 @@ pub(super) struct Followed {
 impl Followed {
     /// [`Error::NodeLeaves`] where there is no order of contact.
     pub(super) fn new(record: &LoadingRecord, connectivity: Connectivity) -> Result<Self, Error> {
-        let events = record.states().iter();
-        let events = events.map(|state| (state.event, state.node));
-        let contact = contact_sequence(record.grid(), events)?;
+        let contact = record.history().contact_sequence(record.grid())?;
         let boundary = record.kernel().boundary;
         let touches = record.states().iter().filter(|state| state.event == ContactEvent::Touch);
         let touches: Vec<LoadingState> = touches.copied().collect();

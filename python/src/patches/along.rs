@@ -6,7 +6,6 @@ use asperity::contact::ContactSequence;
 use asperity::loading;
 use asperity::patches::{
     Connectivity, MergeTree, PatchHistory, PatchState, Percolation, activation_map,
-    contact_sequence,
 };
 use asperity::{ContactEvent, LoadingState};
 use numpy::{PyArray1, PyArray2};
@@ -74,8 +73,7 @@ fn patches(
         return Err(Failure::arguments("patches needs a LoadingPath or a History"));
     };
     let (contact, states) = detached(py, || {
-        let events = history.states().iter().map(|state| (state.event, state.node));
-        let contact = contact_sequence(setting.grid, events)?;
+        let contact = history.contact_sequence(setting.grid)?;
         let mut touched = PatchHistory::new(&contact, setting.boundary, connectivity);
         let mut present = None;
         let states = history.states().iter().filter_map(|state| {

@@ -29,7 +29,7 @@ pub(in crate::loading) enum Attempt {
 }
 
 /// Pressures and gaps when a window begins.
-pub(super) struct Before {
+pub(super) struct AtStart {
     /// Pressure and rate of the contact.
     pressures: Vec<[f64; 2]>,
     /// Of nodes that are not watched and that might touch.
@@ -56,7 +56,7 @@ pub(super) fn first_release(run: &LoadingRun) -> f64 {
     falling.map(|(pressure, rate)| -pressure / rate).fold(f64::INFINITY, f64::min)
 }
 
-impl Before {
+impl AtStart {
     pub(super) fn of(run: &LoadingRun, ranking: &Ranking, window: &Window) -> Self {
         let Solution { pressure, rate } = run.field.solution();
         let furthest = FURTHEST * window.horizon();

@@ -35,7 +35,7 @@ use crate::loading::tuning::{
 use crate::updater::{Beside, Iterations, Proposal, Schur, WindowFactor};
 use crate::{Boundary, Error, Problem, UpdaterError};
 use choice::{Candidates, cut, with_ties};
-use leaving::{Attempt, Before};
+use leaving::{AtStart, Attempt};
 use states::Passed;
 
 /// Finds events in windows that are corrected at their end.
@@ -325,7 +325,7 @@ impl Estimated {
         let horizon = (window.horizon(), window.nodes().len() == self.ranking.len());
         let (mut kept, mut time) = cut(events, horizon, most, tolerances);
         let start = run.scalars.approach();
-        let before = self.may_leave.then(|| Before::of(run, &self.ranking, window));
+        let at_start = self.may_leave.then(|| AtStart::of(run, &self.ranking, window));
         let mut has_moved = false;
         loop {
             if time <= tolerances.tie {
@@ -351,7 +351,7 @@ impl Estimated {
             let own = events[kept - 1].time;
             let is_shortest = kept == 1 && time <= own;
             let at = (time, is_shortest);
-            let mut until = Self::contradicted(run, &trial, tolerances, before.as_ref(), at);
+            let mut until = Self::contradicted(run, &trial, tolerances, at_start.as_ref(), at);
             if until.is_none() {
                 let of_window = (window, &trial, &events[..kept]);
                 let passed = self.refine(run, iterations, tolerances, of_window, time)?;
@@ -360,8 +360,8 @@ impl Estimated {
                     return Ok(Outcome::TakenBack);
                 };
                 let events = (&correction.window, &settled.events[..]);
-                let sound = before.as_ref().and_then(|before| {
-                    before.sound_between(
+                let sound = at_start.as_ref().and_then(|at_start| {
+                    at_start.sound_between(
                         run,
                         iterations,
                         tolerances,
@@ -402,14 +402,14 @@ impl Estimated {
         run: &LoadingRun,
         trial: &Trial,
         tolerances: &WindowTolerances,
-        before: Option<&Before>,
+        at_start: Option<&AtStart>,
         (time, is_shortest): (f64, bool),
     ) -> Option<f64> {
         let approach = run.scalars.approach() + time;
         let (problem, contact, _) = trial.set(run);
-        if let Some(before) = before {
+        if let Some(at_start) = at_start {
             let tension = tolerances.overlap(approach) / problem.table().self_influence();
-            if let Some(after) = before.sound_until(run, tension, (contact, approach), time) {
+            if let Some(after) = at_start.sound_until(run, tension, (contact, approach), time) {
                 return Some(BEFORE_RELEASE * after - time);
             }
         }

@@ -6,7 +6,7 @@ use crate::loading::ranking::rank;
 use crate::loading::test_chain::{self, Altered};
 use crate::surface::{Amplitude, SelfAffine};
 use crate::updater::Left;
-use crate::updater::{ConjugateGradient, Dense, RecursiveCholesky};
+use crate::updater::{ConjugateGradient, Dense, RecursiveCholesky, join_all};
 use crate::{Boussinesq, InfluenceKernel, PeriodicBoussinesq};
 
 /// The ranking takes 16 bytes for each of 15 nodes, a problem two fields, a table of 9 × 5 coefficients and a
@@ -200,33 +200,21 @@ fn errors_say_where_the_path_is() -> Result<(), Error> {
     Ok(())
 }
 
-/// A step that is taken back leaves contact and scalars as they were, or without its last nodes, and whoever solves on
-/// the contact is told of what is left.
+/// Nodes that are taken back are out of contact, and what solves on it goes back as well.
 #[test]
-fn steps_are_taken_back() -> Result<(), Error> {
-    for (last, left) in [(0, &[0, 2][..]), (1, &[0]), (9, &[])] {
-        let mut run = test_chain::surveyed(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0, 2.5], &[0, 2], 1.5)?;
-        let before = run.scalars.state(2);
-        let mark = run.mark().without_last(last);
-        run.contact.push(4)?;
-        run.contact.push(6)?;
-        run.scalars.advance(3.0);
-        run.scalars.touch([0.25, 1.0], 4);
-        let mut told = Vec::new();
-        run.roll_back(&mark, |_, contact| {
-            told = contact.order().to_vec();
-            Ok(())
-        })?;
-        assert_eq!((run.contact.order(), &told[..]), (left, left));
-        assert_eq!(run.scalars.state(2), before);
-        // Where nobody can follow the path has gone back all the same.
-        run.contact.push(5)?;
-        let refused = run.roll_back(&mark, |problem, contact| {
-            Dense.solve(problem, contact, 9, 0.0, &mut Solution::default())
-        });
-        assert!(matches!(refused, Err(Error::LengthMismatch { .. })));
-        assert_eq!(run.contact.order(), left);
-    }
+fn nodes_are_taken_back() -> Result<(), Error> {
+    let mut run = test_chain::surveyed(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0], &[0, 2, 4], 2.5)?;
+    let mut updater = RecursiveCholesky::default();
+    join_all(
+        &mut updater,
+        &run.problem,
+        &mut ContactSequence::new(run.problem.grid()),
+        &[0, 2, 4],
+        usize::MAX,
+    )?;
+    run.cut(&mut updater, 2)?;
+    assert_eq!(run.contact.order(), [0, 2]);
+    updater.solve(&run.problem, &run.contact, 2, 1.5, &mut Solution::default())?;
     Ok(())
 }
 

@@ -93,7 +93,7 @@ fn what_does_not_fit_is_refused() -> Result<(), Error> {
     let grid = Grid::square(3, 1.0)?;
     let mut edge = ContactEdge::new(grid, Boundary::Free);
     let outside = edge.follow(ContactEvent::Touch, (0, 3));
-    assert!(matches!(outside, Err(Error::OutOfRange { .. })));
+    assert!(matches!(outside, Err(Error::NodeOutOfGrid { .. })));
     let (map, gap) = (DMatrix::from_element(2, 3, true), DMatrix::zeros(3, 3));
     let made = ContactEdge::of(&map, grid, Boundary::Free);
     assert!(matches!(made, Err(Error::GridMismatch { .. })));

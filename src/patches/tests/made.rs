@@ -13,7 +13,7 @@ use crate::contact::ContactSequence;
 use crate::loading::History;
 use crate::reference::HertzSphere;
 use crate::surface::Paraboloid;
-use crate::{Boundary, Boussinesq, ContactEvent, Error, Grid, LoadingSolver, SurfaceError};
+use crate::{Boundary, Boussinesq, Error, Grid, LoadingSolver, SurfaceError};
 
 /// A map from a picture of rows along x.
 fn map(rows: &[&str]) -> DMatrix<bool> {
@@ -112,27 +112,6 @@ fn a_patch_that_climbs_leads_along_both_directions() -> Result<(), Error> {
 }
 
 #[test]
-fn a_path_with_nodes_that_leave_has_no_order() -> Result<(), Error> {
-    use ContactEvent::{Limit, Release, Touch};
-    let grid = Grid::new(3, 2, 1.0, 1.0)?;
-    let contact = contact_sequence(grid, [(Touch, (1, 1)), (Touch, (2, 0)), (Limit, (2, 0))])?;
-    assert_eq!(contact.order(), [4, 2]);
-    let events = [(Touch, (1, 1)), (Touch, (2, 0)), (Release, (1, 1))];
-    assert!(matches!(
-        contact_sequence(grid, events),
-        Err(Error::NodeLeaves { ix: 1, iy: 1, event: 3 })
-    ));
-    assert!(matches!(
-        contact_sequence(grid, [(Touch, (1, 1)), (Touch, (1, 1))]),
-        Err(Error::AlreadyInContact { ix: 1, iy: 1 })
-    ));
-    for node in [(3, 0), (0, 2), (usize::MAX, 0), (0, usize::MAX)] {
-        assert!(matches!(contact_sequence(grid, [(Touch, node)]), Err(Error::OutOfRange { .. })));
-    }
-    Ok(())
-}
-
-#[test]
 fn maps_and_fields_need_the_shape_of_the_grid() -> Result<(), Error> {
     let grid = Grid::new(3, 2, 1.0, 1.0)?;
     let all = DMatrix::from_element(2, 3, true);
@@ -167,8 +146,7 @@ fn the_activation_map_holds_every_contact_map() -> Result<(), Error> {
     let (grid, _, history) = sphere((12, 9), 0.4)?;
     let step = activation_map(&grid, history.states(), |state| state.step as f64)?;
     let approach = activation_map(&grid, history.states(), |state| state.contact.approach)?;
-    let events = history.states().iter().map(|state| (state.event, state.node));
-    let contact = contact_sequence(grid, events)?;
+    let contact = history.contact_sequence(grid)?;
     assert_eq!(contact.len(), 43);
     for state in history.states() {
         let map = contact.map_at(state.step);
@@ -179,7 +157,7 @@ fn the_activation_map_holds_every_contact_map() -> Result<(), Error> {
     assert_eq!(step.iter().filter(|touched| touched.is_nan()).count(), 108 - 43);
     let small = Grid::new(9, 12, 1.0, 1.0)?;
     let refused = activation_map(&small, history.states(), |state| state.contact.load);
-    assert!(matches!(refused, Err(Error::OutOfRange { .. })));
+    assert!(matches!(refused, Err(Error::NodeOutOfGrid { .. })));
     Ok(())
 }
 
@@ -190,8 +168,7 @@ fn the_corrected_area_is_closer_to_that_of_hertz() -> Result<(), Error> {
     assert_relative_eq!(Perimeter::AREA_CORRECTION, 0.118_114_159_8, max_relative = 1e-6);
     for n in [(40, 40), (48, 32)] {
         let (grid, hertz, history) = sphere(n, 0.5)?;
-        let events = history.states().iter().map(|state| (state.event, state.node));
-        let contact = contact_sequence(grid, events)?;
+        let contact = history.contact_sequence(grid)?;
         let patches = PatchHistory::new(&contact, Boundary::Free, Connectivity::Four);
         let (mut error, mut corrected) = (0.0, 0.0);
         for (patches, state) in patches.zip(history.states()).skip(200) {

@@ -232,20 +232,24 @@ fn ties_come_in_the_order_of_their_nodes() {
     assert_eq!(pairs(&events), expected);
 }
 
-/// A twenty-fifth of the least error, 0.125, times the least rate, 0.5; none if that was not enough.
+/// A twenty-fifth of the least error, 0.001 25, times the least rate, 0.5; of a thousandth of the approach, 1 + 2, where
+/// all errors are greater; none if that was not enough.
 #[test]
 fn solutions_are_as_exact_as_errors_ask() {
     let events = [(0, 1.0), (1, 2.0), (2, 3.0), (3, 4.0)];
-    let errors = [0.01, 0.25, 0.125, 0.01];
     let lines = [[1.0, 0.1], [1.0, 0.75], [1.0, 0.5], [1.0, 0.1]];
     let tolerances = tolerances(1.0, 0.0, 1e-9);
-    with_ties(&events, &errors, &lines, tolerances, |mut ties| {
-        close(&[ties.sufficient_error(1, 2)], &[0.0025]);
-        ties.asked = Some(2);
-        close(&[ties.sufficient_error(1, 2)], &[0.0025]);
-        ties.asked = Some(1);
-        assert_eq!(ties.sufficient_error(1, 2), 0.0);
-    });
+    for (errors, sufficient) in
+        [([1e-4, 0.002_5, 0.001_25, 1e-4], 2.5e-5), ([0.01, 0.25, 0.125, 0.01], 6e-5)]
+    {
+        with_ties(&events, &errors, &lines, tolerances, |mut ties| {
+            close(&[ties.sufficient_error(1, 2)], &[sufficient]);
+            ties.asked = Some(2);
+            close(&[ties.sufficient_error(1, 2)], &[sufficient]);
+            ties.asked = Some(1);
+            assert_eq!(ties.sufficient_error(1, 2), 0.0);
+        });
+    }
 }
 
 /// `(4, 2, 1; 2, 4, 1; 1, 1, 4)` without its first node: 4 − 1, 1 − 1/2, 4 − 1/4; and at the time 2, at which the first
