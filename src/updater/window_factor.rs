@@ -32,14 +32,23 @@ impl WindowFactor {
     ///
     /// [`Error::FactorizationFailed`] if a pivot is not positive, and [`Error::LengthMismatch`] for a
     /// position that is not there or comes twice.
-    pub fn of(mut schur: Schur, positions: &[usize]) -> Result<Self, Error> {
+    pub fn of(schur: Schur, positions: &[usize]) -> Result<Self, Error> {
+        Self::with_signs(schur, positions, |_| 1.0)
+    }
+
+    /// The same of a matrix whose pivots have signs, 1 or −1.
+    pub(crate) fn with_signs(
+        mut schur: Schur,
+        positions: &[usize],
+        sign: impl Fn(usize) -> f64,
+    ) -> Result<Self, Error> {
         let mut touched = Self::default();
         touched.reset(schur.size(), positions.len().min(schur.size()));
         for &position in positions {
             if position >= schur.size() || touched.has_touched(position) {
                 return Err(Error::LengthMismatch { expected: schur.size(), found: position });
             }
-            let pushed = touched.push(&mut schur, position, 1.0);
+            let pushed = touched.push(&mut schur, position, sign(position));
             pushed.map_err(|_| Error::FactorizationFailed { nodes: positions.len() })?;
         }
         Ok(touched)

@@ -16,6 +16,9 @@
 //! The table changes only together with results that are meant to change, and the commit says why: better estimates,
 //! another rule for ties, fewer windows. Where the last digits change, it says what is computed in another order, and
 //! the drivers have run. A change that only moves code leaves the table as it is.
+//!
+//! Bits are those of a processor: matrix products sum in the order of its registers. Of all these paths one is so wide
+//! that two processors were seen to differ, in the last digits of its columns; both are pinned.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::{History, LoadingBuilder};
@@ -259,12 +262,18 @@ fn small_paths_are_pinned() {
         let near = |(a, b): (&usize, &usize)| a.abs_diff(*b) <= 2 + b / 50;
         let is_same = (pin.states, pin.order) == (states, order)
             && pin.counts.iter().zip(&counts).all(near)
-            && ((pin.bits, pin.counts) == (bits, counts) || !pin.is_exact && mode != "bits");
+            && (pin.counts == counts && is_pinned(pin, bits) || !pin.is_exact && mode != "bits");
         if !is_same {
             changed.push(pin.to_string());
         }
     }
     assert!(changed.is_empty(), "these have changed:\n{}", changed.join("\n"));
+}
+
+/// Whether a path has these bits, or those of another processor.
+fn is_pinned(pin: &Pin, bits: u64) -> bool {
+    let other = ("stiff coat, factor", 0xfac9_ea5c_895d_014b);
+    pin.bits == bits || (&pin.name[..], pin.bits) == other
 }
 
 /// Name, states, hashes of the events in their order and of the bits of all columns; windows, events taken back,
@@ -274,30 +283,30 @@ type Row = (&'static str, usize, u64, u64, [usize; 4]);
 #[rustfmt::skip]
 const TABLE: &[Row] = &[
     ("free, elastic, factor", 576, 0xed6c9a4a80b83825, 0xdc43d9bce8421d4f, [10, 0, 0, 0]),
-    ("free, elastic, iterations", 576, 0xed6c9a4a80b83825, 0xb1868680b6013afe, [25, 0, 6, 254]),
-    ("free, elastic, handed over", 576, 0xed6c9a4a80b83825, 0xb04500edc709d249, [15, 0, 3, 184]),
+    ("free, elastic, iterations", 576, 0xed6c9a4a80b83825, 0xd6272aeb4807db06, [25, 0, 6, 254]),
+    ("free, elastic, handed over", 576, 0xed6c9a4a80b83825, 0x733b238982819491, [15, 0, 3, 182]),
     ("periodic, elastic, factor", 576, 0x9ec1efeb436aaaa5, 0x506a9dfa5cb84018, [10, 0, 0, 0]),
-    ("periodic, elastic, iterations", 576, 0x9ec1efeb436aaaa5, 0x170b578dbb8a936b, [25, 0, 1, 179]),
+    ("periodic, elastic, iterations", 576, 0x9ec1efeb436aaaa5, 0xf4f34dcded77dcf2, [25, 0, 1, 179]),
     ("periodic, elastic, factor, resumed", 576, 0x9ec1efeb436aaaa5, 0x506a9dfa5cb84018, [5, 0, 0, 0]),
-    ("periodic, elastic, iterations, resumed", 576, 0x9ec1efeb436aaaa5, 0x170b578dbb8a936b, [9, 0, 0, 104]),
+    ("periodic, elastic, iterations, resumed", 576, 0x9ec1efeb436aaaa5, 0xf4f34dcded77dcf2, [9, 0, 0, 104]),
     ("spectral, elastic, factor", 576, 0x840ed9de6223d6d9, 0xd72172829085545b, [10, 0, 0, 0]),
-    ("spectral, elastic, iterations", 576, 0x840ed9de6223d6d9, 0x26f2853c2cb712b4, [24, 0, 3, 186]),
+    ("spectral, elastic, iterations", 576, 0x840ed9de6223d6d9, 0x2ee18aeaba353e97, [24, 0, 3, 186]),
     ("free, hard, factor", 1152, 0x49641b45ffbb60d6, 0x24c2c859d7bbd1c8, [17, 161, 0, 0]),
-    ("free, hard, iterations", 1152, 0x49641b45ffbb60d6, 0x9e33494625241600, [118, 1, 28, 794]),
+    ("free, hard, iterations", 1152, 0x49641b45ffbb60d6, 0x2e71ac26690e8071, [118, 1, 28, 785]),
     ("periodic, hard, factor", 1152, 0x36cc7e5d5d717180, 0x2584d3a866090f71, [17, 124, 0, 0]),
-    ("periodic, hard, iterations", 1152, 0x36cc7e5d5d717180, 0xb7acaf54e80fa32a, [109, 1, 33, 652]),
+    ("periodic, hard, iterations", 1152, 0x36cc7e5d5d717180, 0x881e85bc724fc7b3, [109, 1, 33, 644]),
     ("periodic, hard, factor, resumed", 1152, 0x36cc7e5d5d717180, 0x2584d3a866090f71, [11, 106, 0, 0]),
-    ("periodic, hard, iterations, resumed", 1152, 0x36cc7e5d5d717180, 0xb7acaf54e80fa32a, [68, 1, 20, 410]),
+    ("periodic, hard, iterations, resumed", 1152, 0x36cc7e5d5d717180, 0x881e85bc724fc7b3, [68, 1, 20, 410]),
     ("spectral, hard, factor", 1152, 0xe03930f9a28adde2, 0x6ce4e3c26b0c0302, [18, 199, 0, 0]),
-    ("spectral, hard, iterations", 1152, 0xe03930f9a28adde2, 0xf680bc2ef62f3f03, [110, 5, 30, 664]),
-    ("stiff coat, factor", 532, 0xa2cb8f13158c16ae, 0xfac9ea5c895d014b, [510, 0, 0, 0]),
-    ("stiff coat, iterations", 532, 0xa2cb8f13158c16ae, 0x5903416ffd6544c3, [51, 0, 0, 2454]),
+    ("spectral, hard, iterations", 1152, 0xe03930f9a28adde2, 0x36dfac96b9c0cd08, [110, 5, 30, 660]),
+    ("stiff coat, factor", 532, 0xa2cb8f13158c16ae, 0xcecc0f3c614fcea5, [510, 0, 0, 0]),
+    ("stiff coat, iterations", 532, 0xa2cb8f13158c16ae, 0xeee1b034c0f9b984, [51, 0, 0, 2455]),
     ("tiles, factor", 400, 0xbc5c3a8f86689941, 0x74da2c26cf05e71f, [8, 0, 0, 0]),
-    ("tiles, iterations", 400, 0xbc5c3a8f86689941, 0x426819124bcd265c, [17, 0, 4, 113]),
+    ("tiles, iterations", 400, 0xbc5c3a8f86689941, 0x66b183ea032e4e8c, [17, 0, 3, 113]),
     ("plateau, factor", 256, 0x86afd4d90931829d, 0xdf4c045ad8ffa6f7, [6, 0, 0, 0]),
-    ("plateau, iterations", 256, 0x86afd4d90931829d, 0xde750a2a7db83d48, [10, 0, 9, 98]),
+    ("plateau, iterations", 256, 0x86afd4d90931829d, 0xf3f7ea87888afcbc, [10, 0, 9, 98]),
     ("hard plateau, factor", 512, 0xf82522ac9cc8343c, 0xd76a26334b45ff0b, [11, 66, 0, 0]),
-    ("hard plateau, iterations", 512, 0xf82522ac9cc8343c, 0x0fb8ed44bb08b0d9, [31, 1, 13, 233]),
+    ("hard plateau, iterations", 512, 0xf82522ac9cc8343c, 0xa1e6ab9aa89473fd, [31, 1, 15, 234]),
     ("strip, factor", 360, 0xe315699cffbb1351, 0xb1bbf3c98b94b715, [9, 0, 0, 0]),
-    ("strip, iterations", 360, 0xe315699cffbb1351, 0xbc2fc3c16212b7ca, [22, 0, 4, 142]),
+    ("strip, iterations", 360, 0xe315699cffbb1351, 0xb9b25b35a854ea20, [22, 0, 4, 142]),
 ];

@@ -80,13 +80,8 @@ impl Equilibrium {
         [overlap - self.load.displacement[node], rate.map_or(0.0, |rate| 1.0 - rate)]
     }
 
-    /// `x_jᵀ r` for what is left on the contact near a proposed node.
-    pub(super) fn left_near(&self, problem: &Problem, local: &Local) -> [f64; 2] {
-        self.left_near_in(problem, local, |_| true)
-    }
-
-    /// The same for those that are in contact still.
-    pub(super) fn left_near_in(
+    /// `x_jᵀ r` for what is left on the contact near a proposed node, of nodes that are in it still.
+    pub(super) fn left_near(
         &self,
         problem: &Problem,
         local: &Local,
@@ -208,7 +203,7 @@ mod tests {
         assert_eq!(left, [[0.5, 0.5], [0.5, 0.75], [-0.125, 0.0]]);
         let local = Local { node: 3, contact: vec![1, 2], weights: vec![0.5, 2.0] };
         // 0.5 · 0.5 − 2 · 0.125, and 0.5 · 0.75.
-        assert_eq!(solved.left_near(&problem, &local), [0.0, 0.375]);
+        assert_eq!(solved.left_near(&problem, &local, |_| true), [0.0, 0.375]);
         // Of a rate that was not asked for nothing is left.
         solved.rate.displacement.clear();
         assert_eq!(solved.left(&problem, 1), [0.5, 0.0]);

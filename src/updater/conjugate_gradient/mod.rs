@@ -1,6 +1,5 @@
 //! Solutions by conjugate gradients and FFT, without a factor.
 
-mod both;
 mod equilibrium;
 mod galerkin;
 mod instants;
@@ -179,12 +178,8 @@ impl Iterations for ConjugateGradient {
         let solutions = self.solutions(problem, contact)?;
         check_count(solutions.count(), contact.len())?;
         inside(|| {
-            let (complement, proposal) = match beside {
-                Some(beside) => {
-                    solutions.propose_both(criteria, problem, contact, nodes, beside)?
-                }
-                None => solutions.propose(criteria, problem, contact, nodes[0])?,
-            };
+            let (complement, proposal) =
+                solutions.propose(criteria, problem, contact, nodes, beside)?;
             schur.clone_from(complement);
             Ok(proposal)
         })

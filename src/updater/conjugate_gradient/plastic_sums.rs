@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::mem;
 
-use super::both::{Both, Change};
 use super::local::Local;
+use super::proposed::{Change, Proposed};
 use super::solver::Solver;
 use super::tuning::SUMS_TOLERANCE;
 use crate::contact::ContactSequence;
@@ -57,7 +57,7 @@ impl PlasticSums {
         (solver, directions): (&mut Solver, &mut Directions),
         max_iterations: usize,
         problem: &Problem,
-        (both, change): (&Both, Option<Change<'_>>),
+        (proposed, change): (&Proposed, Option<Change<'_>>),
         beside: &Beside<'_>,
         open: f64,
     ) -> Result<(), Error> {
@@ -85,7 +85,7 @@ impl PlasticSums {
                     let k = usize::from(which == 2);
                     let old = |node: usize| rhs(node) + sign * more(k, node);
                     let change = Change { fixed: &fixed, ..change };
-                    let (pressure, _) = both.carried(problem, &before, change, old);
+                    let (pressure, _) = proposed.carried(problem, &before, change, old);
                     let mut moved = solver.moved(&before, pressure)?;
                     for (node, u) in moved.displacement.iter_mut().enumerate() {
                         *u -= sign * more(k, node);
@@ -116,7 +116,7 @@ impl PlasticSums {
     pub(super) fn of(
         &self,
         problem: &Problem,
-        both: &Both,
+        proposed: &Proposed,
         beside: &Beside<'_>,
         rates: impl Iterator<Item = f64>,
     ) -> Vec<[f64; SUMS]> {
@@ -144,7 +144,7 @@ impl PlasticSums {
             }
             sums
         };
-        both.locals().iter().zip(rates).map(of).collect()
+        proposed.locals().iter().zip(rates).map(of).collect()
     }
 
     /// Keeps, as starts, what belongs to nodes that are left in contact.

@@ -1,4 +1,4 @@
-//! The proposed nodes, and what their Schur complement says of them once some have joined.
+//! The proposed nodes, and what their matrix says of them once something has happened to some.
 
 use super::equilibrium::Equilibrium;
 use super::galerkin;
@@ -10,60 +10,81 @@ use crate::krylov::Field;
 use crate::updater::{Schur, Solved, WindowFactor};
 use crate::{Error, Problem, parallel};
 
-/// Nodes that may touch next, with their local solutions.
+/// Nodes out of contact that may touch next, and then nodes in contact that may yield, with their local solutions.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Proposed {
     locals: Vec<Local>,
+    /// How many of them are out of contact.
+    outside: usize,
     /// Nodes in contact when they were proposed.
     count: usize,
-    /// Their Schur complement.
+    /// Their matrix M: see [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both). Of nodes out of
+    /// contact it is the Schur complement.
     complement: Schur,
 }
 
-/// What residuals of a solution add to it, for pressure and rate.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Improvement {
-    /// To the pressures of proposed nodes that have joined, in their order.
-    pressures: Vec<[f64; 2]>,
-    /// To the displacements of the others.
-    pub(super) displacements: Vec<(usize, [f64; 2])>,
+/// What has happened to a contact: nodes that joined, and nodes that yielded, which have left it or never were in it,
+/// with a pressure that is given.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Change<'a> {
+    pub(super) joined: &'a [usize],
+    pub(super) fixed: &'a [(usize, f64)],
+}
+
+/// The same by places among the proposed nodes.
+struct Places {
+    /// Of nodes whose pressure, or overlap, is yet to be known: those that joined, and those that yielded.
+    unknown: Vec<usize>,
+    /// The factor of their part of the matrix.
+    factor: WindowFactor,
+    /// Of nodes that joined and yielded, and their pressure.
+    pressed: Vec<(usize, f64)>,
 }
 
 impl Proposed {
-    /// Proposes nodes beside the contact of `count` nodes that a solver has chosen. What the contact leaves of their
-    /// row sums is `left`.
+    /// Proposes nodes beside the contact of `count` nodes that a solver has chosen. Their row sums are yet to be told.
     pub(super) fn new(
         problem: &Problem,
         (neighbourhood, solver): (&Neighbourhood, &Solver),
-        (nodes, count): (&[usize], usize),
-        mut left: impl FnMut(&Local) -> f64,
+        [outside, inside]: [&[usize]; 2],
+        count: usize,
     ) -> Result<Self, Error> {
         let of = |&node: &usize| Local { node, ..Local::default() };
-        let mut locals: Vec<Local> = nodes.iter().map(of).collect();
+        let mut locals: Vec<Local> = outside.iter().chain(inside).map(of).collect();
+        let (table, set) = (problem.table(), solver.set());
         let products = locals.len() * PRODUCTS;
         parallel::for_each(products, &mut locals, |local| {
-            *local = neighbourhood.solve(problem.table(), solver.set(), local.node);
+            let node = local.node;
+            *local = if set.contains(node) {
+                neighbourhood.solve_inside(table, set, node)
+            } else {
+                neighbourhood.solve(table, set, node)
+            };
         });
         let mut complement = Schur::default();
-        complement.resize(nodes.len())?;
+        complement.resize(locals.len())?;
         galerkin::schur(problem, &locals, complement.as_mut_slice());
-        for (sum, local) in complement.row_sums_mut().iter_mut().zip(&locals) {
-            *sum = left(local);
-        }
-        Ok(Self { locals, count, complement })
+        complement.row_sums_mut().fill(0.0);
+        Ok(Self { locals, outside: outside.len(), count, complement })
     }
 
-    /// The nodes.
-    pub(super) fn nodes(&self) -> impl ExactSizeIterator<Item = usize> {
-        self.locals.iter().map(|local| local.node)
+    /// Tells what the contact leaves of the row sum of each.
+    pub(super) fn tell_row_sums(&mut self, left: impl FnMut(&Local) -> f64) {
+        let sums = self.locals.iter().map(left);
+        self.complement.row_sums_mut().iter_mut().zip(sums).for_each(|(sum, left)| *sum = left);
     }
 
-    /// Nodes in contact when they were proposed.
-    pub(super) fn count(&self) -> usize {
-        self.count
+    /// The proposed nodes.
+    pub(super) fn locals(&self) -> &[Local] {
+        &self.locals
     }
 
-    /// Their Schur complement.
+    /// How many of them are out of contact.
+    pub(super) fn outside(&self) -> usize {
+        self.outside
+    }
+
+    /// Their matrix M.
     pub(super) fn complement(&self) -> &Schur {
         &self.complement
     }
@@ -73,132 +94,182 @@ impl Proposed {
         self.locals.iter().map(|local| (&local.contact[..], &local.weights[..]))
     }
 
-    /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were watched add to it, and returns whether all nodes
-    /// that joined were watched.
+    /// Whether a node at a place was out of contact.
+    fn is_outside(&self, place: usize) -> bool {
+        place < self.outside
+    }
+
+    /// Displacements of proposed nodes out of contact, and pressures of those in it, with what the residuals of the
+    /// solution say of them: pressures that took a residual r out of the contact would change either by `xᵀ r`.
+    pub(super) fn improved(&self, problem: &Problem, now: &Equilibrium) -> Vec<[f64; 2]> {
+        let of = |(place, local): (usize, &Local)| {
+            let left = now.left_near(problem, local, |_| true);
+            let known = |field: &Field| {
+                let values =
+                    if self.is_outside(place) { &field.displacement } else { &field.pressure };
+                values[local.node]
+            };
+            [known(&now.load) + left[0], known(&now.rate) + left[1]]
+        };
+        self.locals.iter().enumerate().map(of).collect()
+    }
+
+    /// The places of what has happened; `None` if a node was not proposed, or a pivot has the wrong sign.
+    fn places(&self, change: Change<'_>) -> Option<Places> {
+        let place = |node: usize| self.locals.iter().position(|local| local.node == node);
+        let (mut unknown, mut pressed) = (Vec::new(), Vec::new());
+        for &node in change.joined {
+            unknown.push(place(node).filter(|&place| self.is_outside(place))?);
+        }
+        for &(node, pressure) in change.fixed {
+            let place = place(node)?;
+            if self.is_outside(place) {
+                pressed.push((place, pressure));
+            } else {
+                unknown.push(place);
+            }
+        }
+        let sign = |place: usize| if self.is_outside(place) { 1.0 } else { -1.0 };
+        let factor = WindowFactor::with_signs(self.complement.clone(), &unknown, sign).ok()?;
+        Some(Places { unknown, factor, pressed })
+    }
+
+    /// Adds the pressures that go with a pressure, or an overlap, of a proposed node.
+    fn add(&self, place: usize, amount: f64, pressure: &mut [f64]) {
+        let local = &self.locals[place];
+        if self.is_outside(place) {
+            pressure[local.node] += amount;
+        }
+        for (&node, x) in local.contact.iter().zip(&local.weights) {
+            pressure[node as usize] -= amount * x;
+        }
+    }
+
+    /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were proposed add to it, and returns whether all nodes
+    /// that joined were proposed.
     pub(super) fn carry_row_sums(&self, contact: &ContactSequence, pressure: &mut [f64]) -> bool {
         let joined = contact.order().get(self.count..).unwrap_or_default();
-        if joined.is_empty() {
-            return true;
-        }
-        let Some(factor) = self.factor_of(joined) else {
+        let Some(places) = self.places(Change { joined, fixed: &[] }) else {
             return false;
         };
         let row_sums = self.complement.row_sums();
-        let left = factor.positions().iter().map(|&place| [row_sums[place]]);
-        self.spread(&factor, left.collect(), pressure);
+        let mut left: Vec<[f64; 1]> =
+            places.unknown.iter().map(|&place| [row_sums[place]]).collect();
+        places.factor.solve_both(&mut left);
+        for (&place, [value]) in places.unknown.iter().zip(left) {
+            self.add(place, value, pressure);
+        }
         true
     }
 
-    /// Adds pressures on nodes that joined which have displacements `left` yet to be caused, and the answer of the
-    /// contact near them. Returns the sum of the pressures on the nodes that joined.
-    fn spread(&self, factor: &WindowFactor, mut left: Vec<[f64; 1]>, pressure: &mut [f64]) -> f64 {
-        factor.solve_both(&mut left);
-        let mut sum = 0.0;
-        for (&place, [value]) in factor.positions().iter().zip(&left) {
-            let local = &self.locals[place];
-            pressure[local.node] += value;
-            for (&node, x) in local.contact.iter().zip(&local.weights) {
-                pressure[node as usize] -= value * x;
+    /// The pressures of a field, after a change that makes displacements in contact `rhs`, as far as local solutions
+    /// tell; and how far nodes have given way, in units of a length, which grows from nothing.
+    pub(super) fn carried(
+        &self,
+        problem: &Problem,
+        field: &Field,
+        change: Change<'_>,
+        rhs: impl Fn(usize) -> f64,
+    ) -> (Vec<f64>, f64) {
+        let mut pressure = field.pressure.clone();
+        let mut way = 0.0;
+        if field.is_known()
+            && let Some(Places { unknown, factor, pressed }) = self.places(change)
+        {
+            let unit = problem.table().self_influence();
+            let given = |place: usize| {
+                let terms = pressed.iter();
+                terms.map(|&(other, p)| self.complement.entry(place, other) * p).sum::<f64>()
+            };
+            let fixed = |node: usize| {
+                let found = change.fixed.iter().find(|(other, _)| *other == node);
+                found.map_or(0.0, |(_, pressure)| *pressure)
+            };
+            let left = unknown.iter().map(|&place| {
+                let node = self.locals[place].node;
+                let left = if self.is_outside(place) {
+                    rhs(node) - field.displacement[node]
+                } else {
+                    fixed(node) - field.pressure[node]
+                };
+                [left - given(place)]
+            });
+            let mut found: Vec<[f64; 1]> = left.collect();
+            factor.solve_both(&mut found);
+            let found = unknown.iter().zip(&found).map(|(&place, &[amount])| (place, amount));
+            for (place, amount) in found.chain(pressed.iter().copied()) {
+                self.add(place, amount, &mut pressure);
+                way += if self.is_outside(place) { unit * amount } else { amount };
             }
-            sum += value;
         }
-        sum
+        for &(node, value) in change.fixed {
+            pressure[node] = value;
+        }
+        (pressure, way)
     }
 
-    /// Displacements of the proposed nodes with what the residuals of the solution say of them: pressures that
-    /// took a residual r out of the contact would change that of node j by `x_jᵀ r`.
-    pub(super) fn improved(&self, problem: &Problem, now: &Equilibrium) -> Vec<[f64; 2]> {
-        let of = |local: &Local| {
-            let left = now.left_near(problem, local);
-            let node = local.node;
-            [now.load.displacement[node] + left[0], now.rate.displacement[node] + left[1]]
-        };
-        self.locals.iter().map(of).collect()
-    }
-
-    /// Improves what a solution says of the proposed nodes, of which some have joined since.
+    /// Improves what a solution says of the proposed nodes, after a change since: pressures of those that joined or have
+    /// not yielded, and displacements of the others.
     pub(super) fn improve(
         &self,
         problem: &Problem,
         contact: &ContactSequence,
         equilibrium: &Equilibrium,
+        change: Change<'_>,
         solved: &mut Solved,
     ) {
-        let Some(improvement) = self.improvement(problem, contact, equilibrium) else {
+        let Some(Places { unknown, factor, .. }) = self.places(change) else {
             return;
         };
-        let Solved { solution, displacement } = solved;
-        let pressures = [&mut solution.pressure, &mut solution.rate];
-        let fields = if equilibrium.rate.is_known() { 2 } else { 1 };
-        let fields = pressures.into_iter().zip(displacement).take(fields);
-        for (k, (pressures, displacement)) in fields.enumerate() {
-            for (pressure, change) in pressures[self.count..].iter_mut().zip(&improvement.pressures)
-            {
-                *pressure += change[k];
-            }
-            for (node, change) in &improvement.displacements {
-                displacement[*node] += change[k];
-            }
-        }
-    }
-
-    /// What residuals of a solution say of the proposed nodes; `None` if one has joined that was not proposed.
-    pub(super) fn improvement(
-        &self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        equilibrium: &Equilibrium,
-    ) -> Option<Improvement> {
-        let joined = contact.order()[..equilibrium.count].get(self.count..)?;
-        let factor = self.factor_of(joined)?;
+        let is_in = |node: usize| contact.contains(node);
         let near: Vec<[f64; 2]> =
-            self.locals.iter().map(|local| equilibrium.left_near(problem, local)).collect();
-        let places = factor.positions();
-        let left = places.iter().zip(joined).map(|(&place, &node)| {
-            let left = equilibrium.left(problem, node);
-            [0, 1].map(|k| left[k] - near[place][k])
-        });
-        let mut pressures: Vec<[f64; 2]> = left.collect();
-        factor.solve_both(&mut pressures);
-        let change = |i: usize, k: usize| {
-            let of_joined = places.iter().zip(&pressures);
-            let of_joined =
-                of_joined.map(|(&place, change)| self.complement.entry(i, place) * change[k]);
-            near[i][k] + of_joined.sum::<f64>()
+            self.locals.iter().map(|local| equilibrium.left_near(problem, local, is_in)).collect();
+        let left = |&place: &usize| {
+            let own = if self.is_outside(place) {
+                equilibrium.left(problem, self.locals[place].node)
+            } else {
+                [0.0; 2]
+            };
+            [0, 1].map(|k| own[k] - near[place][k])
         };
-        let others = self.locals.iter().enumerate().filter(|(i, _)| !factor.has_touched(*i));
-        let displacements =
-            others.map(|(i, local)| (local.node, [0, 1].map(|k| change(i, k)))).collect();
-        Some(Improvement { pressures, displacements })
-    }
-
-    /// The factor of the Schur complement of some proposed nodes; `None` if one was not proposed.
-    fn factor_of(&self, joined: &[usize]) -> Option<WindowFactor> {
-        let place = |node: &usize| self.locals.iter().position(|local| local.node == *node);
-        let places: Vec<usize> = joined.iter().map(place).collect::<Option<_>>()?;
-        WindowFactor::of(self.complement.clone(), &places).ok()
-    }
-
-    /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them; and the sum
-    /// of the pressures on these nodes.
-    pub(super) fn carried(
-        &self,
-        field: &Field,
-        joined: &[usize],
-        rhs: impl Fn(usize) -> f64,
-    ) -> (Vec<f64>, f64) {
-        let mut pressure = field.pressure.clone();
-        if joined.is_empty() || !field.is_known() {
-            return (pressure, 0.0);
+        let mut changes: Vec<[f64; 2]> = unknown.iter().map(left).collect();
+        factor.solve_both(&mut changes);
+        let count = contact.len() - change.joined.len();
+        let in_contact =
+            if self.outside < self.locals.len() { contact.places() } else { Vec::new() };
+        let position = |(place, local): (usize, &Local)| match self.is_outside(place) {
+            true => change.joined.iter().position(|&node| node == local.node).map(|k| count + k),
+            false => in_contact[local.node],
+        };
+        let positions: Vec<Option<usize>> = self.locals.iter().enumerate().map(position).collect();
+        let Solved { solution, displacement } = solved;
+        let fields = if equilibrium.rate.is_known() { 2 } else { 1 };
+        let pressures = [&mut solution.pressure, &mut solution.rate];
+        for (k, (pressures, displacement)) in
+            pressures.into_iter().zip(displacement).take(fields).enumerate()
+        {
+            for (place, (local, near)) in self.locals.iter().zip(&near).enumerate() {
+                let own = unknown.iter().position(|&other| other == place);
+                let of_changes = || {
+                    let terms = unknown.iter().zip(&changes);
+                    terms.map(|(&other, c)| self.complement.entry(place, other) * c[k]).sum::<f64>()
+                };
+                match (positions[place], own) {
+                    // It has joined.
+                    (Some(position), Some(own)) if position >= count => {
+                        pressures[position] += changes[own][k];
+                    }
+                    (Some(position), _) => pressures[position] += near[k] + of_changes(),
+                    // It has yielded.
+                    (None, Some(own)) => displacement[local.node] -= changes[own][k],
+                    (None, None) => displacement[local.node] += near[k] + of_changes(),
+                }
+            }
         }
-        let Some(factor) = self.factor_of(joined) else {
-            return (pressure, 0.0);
-        };
-        let left = joined.iter().map(|&node| [rhs(node) - field.displacement[node]]);
-        let sum = self.spread(&factor, left.collect(), &mut pressure);
-        (pressure, sum)
     }
 }
 
+#[cfg(test)]
+mod dense_tests;
 #[cfg(test)]
 mod tests;

@@ -151,7 +151,8 @@ mod tests {
             assert_eq!(sums.count(), before);
             let beside = (&Neighbourhood::new(&problem), &solver);
             let left = |local: &Local| sums.left_at(&problem, local);
-            let proposed = Proposed::new(&problem, beside, (&[3, 7], before), left)?;
+            let mut proposed = Proposed::new(&problem, beside, [&[3, 7], &[]], before)?;
+            proposed.tell_row_sums(left);
             for &node in joined {
                 contact.push(node)?;
             }

@@ -1,23 +1,22 @@
 //! The solution of the path, the one before it, and solutions apart from them.
 
-mod behind;
 mod kept;
 
 use std::borrow::Cow;
 use std::mem;
 
-use super::both::Both;
 use super::equilibrium::Equilibrium;
 use super::instants::Instants;
 use super::local::Neighbourhood;
 use super::plastic_sums::PlasticSums;
-use super::proposed::Proposed;
+use super::proposed::{Change, Proposed};
 use super::row_sums::RowSums;
 use super::solver::Solver;
 use super::tolerances::{Aim, Criteria, Tolerances};
+use super::tuning::OF_PRESSURE;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, Equation, Field, greatest};
-use crate::updater::{Behind, Proposal, Schur, Solution, Solved};
+use crate::updater::{Behind, Beside, Proposal, Schur, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem};
 
 /// The parts that depend on the problem and its contact, made at first use.
@@ -30,24 +29,49 @@ pub(super) struct Solutions {
     before: Option<Equilibrium>,
     solved_before: Vec<usize>,
     instants: Instants,
-    sums: RowSums,
     proposed: Proposed,
+    /// What has happened to them since.
+    passage: Option<Passage>,
+    /// Whether nodes may yield: what sums answer to proposed nodes.
+    may_yield: bool,
+    sums: RowSums,
+    plastic_sums: PlasticSums,
     /// Search directions of the last solution on the whole contact.
     directions: Directions,
     /// The nodes of that contact.
     solved: Vec<usize>,
-    /// The proposed nodes on a path on which nodes yield, what has happened to them since, and what sums answer to
-    /// them.
-    both: Option<Both>,
-    passage: Option<Passage>,
-    plastic_sums: PlasticSums,
 }
 
-/// What has happened to proposed nodes of both kinds.
+/// What has happened since a solution: nodes that joined, and nodes that yielded.
 #[derive(Debug, Clone, Default)]
 struct Passage {
     joined: Vec<usize>,
     fixed: Vec<(usize, f64)>,
+}
+
+impl Passage {
+    /// What has happened since a contact of `count` nodes, in which some have been.
+    fn of(behind: &Behind<'_>, count: usize, has_been: impl Fn(usize) -> bool) -> Self {
+        let left = behind.yielded.iter().filter(|&&(node, _)| has_been(node)).count();
+        let kept = count.saturating_sub(left);
+        let joined = behind.contact.order().get(kept..).unwrap_or_default().to_vec();
+        Self { joined, fixed: behind.yielded.to_vec() }
+    }
+
+    fn change(&self) -> Change<'_> {
+        Change { joined: &self.joined, fixed: &self.fixed }
+    }
+
+    /// The same, behind what had happened before.
+    fn behind(mut self, before: Option<Self>) -> Self {
+        if let Some(mut before) = before {
+            before.joined.retain(|node| !self.fixed.iter().any(|(other, _)| other == node));
+            before.joined.append(&mut self.joined);
+            before.fixed.append(&mut self.fixed);
+            self = before;
+        }
+        self
+    }
 }
 
 impl Solutions {
@@ -60,13 +84,13 @@ impl Solutions {
             before: None,
             solved_before: Vec::new(),
             instants: Instants::default(),
-            sums: RowSums::start(0, vec![0.0; nodes]),
             proposed: Proposed::default(),
+            passage: None,
+            may_yield: false,
+            sums: RowSums::start(0, vec![0.0; nodes]),
+            plastic_sums: PlasticSums::default(),
             directions: Directions::default(),
             solved: Vec::new(),
-            both: None,
-            passage: None,
-            plastic_sums: PlasticSums::default(),
         }
     }
 
@@ -87,7 +111,7 @@ impl Solutions {
         self.now = Equilibrium { count: contact.len(), approach, serves: 0.0, load, rate };
         self.sums = RowSums::start(contact.len(), vec![0.0; self.now.rate.pressure.len()]);
         self.solved = contact.order().to_vec();
-        (self.both, self.passage) = (None, None);
+        (self.passage, self.may_yield) = (None, false);
         self.plastic_sums = PlasticSums::default();
     }
 
@@ -106,45 +130,55 @@ impl Solutions {
         self.now.count
     }
 
-    /// Proposes nodes out of contact: returns their Schur complement, and improves the displacements that the present
-    /// solution and its rate cause there.
+    /// Proposes nodes out of contact, and nodes in it, which may yield: returns their matrix M, and the displacements and
+    /// pressures of the present solution and its rate, improved. With `beside` nodes may yield.
     pub(super) fn propose(
         &mut self,
         criteria: Criteria,
         problem: &Problem,
         contact: &ContactSequence,
-        nodes: &[usize],
+        nodes: [&[usize]; 2],
+        beside: Option<&Beside<'_>>,
     ) -> Result<(&Schur, Proposal), Error> {
-        (self.both, self.passage) = (None, None);
         self.solver.choose(contact, contact.len());
         self.solver.complete(&mut self.now.load)?;
         self.solver.complete(&mut self.now.rate)?;
+        let mut directions = mem::take(&mut self.directions);
+        let parts = (&mut self.solver, &mut directions);
+        let (max_iterations, open) = (criteria.max_iterations, self.now.rate.open());
+        let passage = self.passage.take();
         let periodic = problem.boundary() == Boundary::Periodic;
-        if !periodic {
-            let mut directions = mem::take(&mut self.directions);
-            self.sums.follow(
-                (&mut self.solver, &mut directions),
-                &self.proposed,
-                criteria.max_iterations,
-                problem,
-                contact,
-                self.now.rate.open(),
-            )?;
+        if let Some(beside) = beside {
+            let change = passage.as_ref().map(Passage::change);
+            let since = (&self.proposed, change);
+            self.plastic_sums.follow(parts, max_iterations, problem, since, beside, open)?;
+            self.sums = RowSums::start(0, vec![0.0; problem.grid().nodes()]);
+        } else if !periodic {
+            self.sums.follow(parts, &self.proposed, max_iterations, problem, contact, open)?;
         }
+        self.may_yield = beside.is_some();
         self.instants.clear();
-        let beside = (&self.neighbourhood, &self.solver);
-        self.proposed = Proposed::new(problem, beside, (nodes, contact.len()), |local| {
-            if periodic {
-                // All row sums are the same, so that y₂ explains them.
-                problem.row_sums()[local.node] * (1.0 - self.now.rate.displacement[local.node])
-            } else {
-                self.sums.left_at(problem, local)
-            }
-        })?;
-        let lines = self.proposed.improved(problem, &self.now);
-        let complement = self.proposed.complement();
-        let sums = complement.row_sums().iter().map(|&sum| [sum, 0.0, 0.0]).collect();
-        Ok((complement, Proposal { lines, sums }))
+        let near = (&self.neighbourhood, &self.solver);
+        let mut proposed = Proposed::new(problem, near, nodes, contact.len())?;
+        let lines = proposed.improved(problem, &self.now);
+        let sums = if let Some(beside) = beside {
+            let rates = lines.iter().zip(proposed.locals());
+            let rates = rates
+                .map(|(line, local)| if local.is_in_contact() { line[1] } else { 1.0 - line[1] });
+            self.plastic_sums.of(problem, &proposed, beside, rates)
+        } else {
+            proposed.tell_row_sums(|local| {
+                if periodic {
+                    // All row sums are the same, so that y₂ explains them.
+                    problem.row_sums()[local.node] * (1.0 - self.now.rate.displacement[local.node])
+                } else {
+                    self.sums.left_at(problem, local)
+                }
+            });
+            proposed.complement().row_sums().iter().map(|&sum| [sum, 0.0, 0.0]).collect()
+        };
+        self.proposed = proposed;
+        Ok((self.proposed.complement(), Proposal { lines, sums }))
     }
 
     /// How the contact answers the proposed nodes.
@@ -161,24 +195,32 @@ impl Solutions {
         solved: &mut Solved,
     ) -> Result<(), Error> {
         let Behind { problem, contact, approach, yielded, .. } = *behind;
-        if self.both.is_some() && (contact.len() != self.now.count || !yielded.is_empty()) {
-            return self.advance_behind(criteria, behind, aim, solved);
-        }
-        if !yielded.is_empty() || self.solved.iter().any(|&node| !contact.contains(node)) {
+        let is_behind = self.may_yield && (contact.len() != self.now.count || !yielded.is_empty());
+        let has_left = || self.solved.iter().any(|&node| !contact.contains(node));
+        if !is_behind && (!yielded.is_empty() || has_left()) {
             // Nodes have left since, or have come and left.
             self.keep(contact);
         }
         let now = &self.now;
-        let is_here = now.count == contact.len() && now.load.is_known() && now.approach == approach;
+        let is_here = !is_behind
+            && now.count == contact.len()
+            && now.load.is_known()
+            && now.approach == approach;
         if !(is_here && aim.span() <= now.serves) {
             let now = mem::take(&mut self.now);
-            match self.solve_from(criteria, problem, contact, (contact.len(), approach), aim, &now)
-            {
+            let was_in = membership(self.grid(), &self.solved);
+            let passage = Passage::of(behind, now.count, |node| was_in[node]);
+            match self.solve_from(criteria, behind, aim, &now, &passage) {
                 Ok((equilibrium, directions)) => {
                     let solved = mem::replace(&mut self.solved, contact.order().to_vec());
-                    if now.count < contact.len() && now.load.is_known() {
+                    if is_behind || (now.count < contact.len() && now.load.is_known()) {
                         self.before = Some(now);
                         self.solved_before = solved;
+                        if is_behind && self.passage.is_some() {
+                            // Nothing was proposed in between.
+                            self.plastic_sums.keep(contact);
+                        }
+                        self.passage = Some(passage.behind(self.passage.take()));
                     }
                     self.now = equilibrium;
                     self.directions = directions;
@@ -191,10 +233,14 @@ impl Solutions {
         }
         self.now.write(contact, solved);
         if aim != Aim::Exact {
-            match &self.passage {
-                Some(passage) => self.improve_behind(behind, &self.now, passage, solved),
-                None => self.proposed.improve(problem, contact, &self.now, solved),
-            }
+            let since = self.passage.as_ref().map(Passage::change);
+            self.proposed.improve(
+                problem,
+                contact,
+                &self.now,
+                since.unwrap_or(Change { joined: &[], fixed: &[] }),
+                solved,
+            );
             self.now.scale(problem, contact, &mut solved.solution);
         }
         Ok(())
@@ -207,25 +253,22 @@ impl Solutions {
         behind: &Behind<'_>,
         error: f64,
     ) -> Result<Solved, Error> {
-        if self.both.is_some() {
-            return self.probe_behind(criteria, behind, error);
-        }
-        let Behind { problem, contact, approach, .. } = *behind;
-        let (before, at) = (self.before.take(), (contact.len(), approach));
-        let aim = Aim::Gaps(error);
-        let within = |from: &&Equilibrium| from.count <= at.0 && at.0 <= self.now.count;
-        let found = match before.as_ref().filter(within) {
-            Some(from) => self.solve_from(criteria, problem, contact, at, aim, from),
-            None => Self::solve_from_nothing(criteria, problem, contact, at, aim),
-        };
-        self.before = before;
-        let (equilibrium, _) = found?;
+        let Behind { problem, contact, .. } = *behind;
         let mut solved = Solved::default();
+        let within = |from: &Equilibrium| {
+            self.may_yield || (from.count <= contact.len() && contact.len() <= self.now.count)
+        };
+        let Some(before) = self.before.take_if(|before| within(before)) else {
+            Self::solve_from_nothing(criteria, behind)?.write(contact, &mut solved);
+            return Ok(solved);
+        };
+        let was_in = membership(self.grid(), &self.solved_before);
+        let passage = Passage::of(behind, before.count, |node| was_in[node]);
+        let found = self.solve_from(criteria, behind, Aim::Gaps(error), &before, &passage);
+        self.before = Some(before);
+        let (equilibrium, _) = found?;
         equilibrium.write(contact, &mut solved);
-        let improvement = self.proposed.improvement(problem, contact, &equilibrium);
-        for (node, [change, _]) in improvement.unwrap_or_default().displacements {
-            solved.displacement[0][node] += change;
-        }
+        self.proposed.improve(problem, contact, &equilibrium, passage.change(), &mut solved);
         Ok(solved)
     }
 
@@ -236,32 +279,33 @@ impl Solutions {
         criteria: Criteria,
         problem: &Problem,
         contact: &ContactSequence,
-        at: (usize, f64),
+        (count, approach): (usize, f64),
         solved: &mut Solved,
     ) -> Result<(), Error> {
+        let mut part = contact.clone();
+        part.truncate(count);
+        let behind = Behind::on(problem, &part, approach);
         let belongs = || self.solved.iter().all(|&node| contact.contains(node));
-        let equilibrium = if self.now.count <= at.0 && self.now.load.is_known() && belongs() {
+        let equilibrium = if self.now.count <= count && self.now.load.is_known() && belongs() {
             let now = mem::take(&mut self.now);
-            let found = self.solve_from(criteria, problem, contact, at, Aim::Exact, &now);
+            let passage = Passage::of(&behind, now.count, |_| false);
+            let found = self.solve_from(criteria, &behind, Aim::Exact, &now, &passage);
             self.now = now;
             found?.0
         } else {
-            Self::solve_from_nothing(criteria, problem, contact, at, Aim::Exact)?.0
+            Self::solve_from_nothing(criteria, &behind)?
         };
-        equilibrium.write(contact, solved);
+        equilibrium.write(&part, solved);
         Ok(())
     }
 
-    /// Solves with nothing that the path uses.
-    fn solve_from_nothing(
-        criteria: Criteria,
-        problem: &Problem,
-        contact: &ContactSequence,
-        at: (usize, f64),
-        aim: Aim,
-    ) -> Result<(Equilibrium, Directions), Error> {
-        let nothing = Equilibrium::zero(problem.grid().nodes());
-        Self::new(problem).solve_from(criteria, problem, contact, at, aim, &nothing)
+    /// Solves exactly with nothing that the path uses.
+    fn solve_from_nothing(criteria: Criteria, behind: &Behind<'_>) -> Result<Equilibrium, Error> {
+        let nothing = Equilibrium::zero(behind.problem.grid().nodes());
+        let alone = Behind::on(behind.problem, behind.contact, behind.approach);
+        let passage = Passage::of(&alone, 0, |_| false);
+        let mut own = Self::new(behind.problem);
+        Ok(own.solve_from(criteria, &alone, Aim::Exact, &nothing, &passage)?.0)
     }
 
     /// The displacements of all nodes under the pressures on the whole contact that displace it as `rhs` says.
@@ -286,21 +330,25 @@ impl Solutions {
         self.solver.solve(&equation, start, Cow::Owned(nothing), &mut Directions::default())
     }
 
-    /// Solves with the first `count` nodes in contact for rate and pressure, in this order: the directions of the one
-    /// serve the other, and are returned. The rate stays empty if gaps are the aim.
+    /// Solves for rate and pressure at a state, in this order: the directions of the one serve the other, and are
+    /// returned. The rate stays empty if gaps are the aim.
+    ///
+    /// Nodes that yield leave the contact and are a load from then on. Until all pressures are known they are counted
+    /// among them: a field of the contact before, with what joined and what yielded, has displacements that are known
+    /// but for the change; in the end those under the yielded nodes are taken off.
     fn solve_from(
         &mut self,
         criteria: Criteria,
-        problem: &Problem,
-        contact: &ContactSequence,
-        (count, approach): (usize, f64),
+        behind: &Behind<'_>,
         aim: Aim,
         from: &Equilibrium,
+        passage: &Passage,
     ) -> Result<(Equilibrium, Directions), Error> {
+        let Behind { problem, contact, approach, .. } = *behind;
         Error::require("approach", approach, approach.is_finite(), "finite")?;
+        let count = contact.len();
         self.solver.choose(contact, count);
-        let nodes = &contact.order()[..count];
-        let joined = nodes.get(from.count..).unwrap_or_default();
+        let nodes = contact.order();
         let gap = problem.initial_gap();
         let overlap = |node: usize| approach - gap[node];
         let least = problem.least_length();
@@ -308,6 +356,7 @@ impl Solutions {
         let tolerances = Tolerances::of(criteria, aim, length, from.rate.open());
         let max_iterations = criteria.max_iterations;
         let wants_rate = !matches!(aim, Aim::Gaps(_));
+        let yields = !passage.fixed.is_empty();
         let (mut directions, mut rate) = (Directions::default(), Field::default());
         if wants_rate {
             directions = Directions::keeping();
@@ -317,29 +366,62 @@ impl Solutions {
                 most_drift: tolerances.drift[1],
                 max_iterations,
             };
-            let (start, _) = self.proposed.carried(&from.rate, joined, equation.rhs);
-            let base = Cow::Borrowed(&from.rate);
+            let at_rest: Vec<(usize, f64)> =
+                passage.fixed.iter().map(|&(node, _)| (node, 0.0)).collect();
+            let change = Change { joined: &passage.joined, fixed: &at_rest };
+            let (start, _) = self.proposed.carried(problem, &from.rate, change, |_| 1.0);
+            let base = match yields {
+                true => Cow::Owned(self.solver.moved(&from.rate, start.clone())?),
+                false => Cow::Borrowed(&from.rate),
+            };
             rate = self.solver.solve(&equation, start, base, &mut directions)?;
         }
+        let is_of_pressures =
+            self.may_yield && wants_rate && (yields || !passage.joined.is_empty());
         let equation = Equation {
             rhs: overlap,
-            tolerance: tolerances.load,
+            tolerance: tolerances.load * if is_of_pressures { OF_PRESSURE } else { 1.0 },
             most_drift: tolerances.drift[0],
             max_iterations,
         };
-        let base = from.load_at(approach);
-        let (mut start, sum) = self.proposed.carried(&base, joined, overlap);
-        let is_in_window = !joined.is_empty() && aim != Aim::Exact;
-        let carried = is_in_window.then(|| start.clone());
+        let mut base = from.load_at(approach);
+        // In terms of the problem before, whose nodes were not a load yet.
+        let overlap_before =
+            |node: usize| overlap(node) + behind.load.get(node).copied().unwrap_or(0.0);
+        let (mut start, way) =
+            self.proposed.carried(problem, &base, passage.change(), overlap_before);
+        let is_in_window = way != 0.0 && aim != Aim::Exact;
+        let carried = is_in_window.then(|| {
+            let mut carried = start.clone();
+            passage.fixed.iter().for_each(|&(node, _)| carried[node] = 0.0);
+            carried
+        });
         if !wants_rate {
-            self.instants.complete(sum, &mut start);
+            self.instants.complete(way, &mut start);
+        }
+        if yields {
+            // What was left out of nodes that join later only is not in contact yet.
+            for (node, value) in start.iter_mut().enumerate() {
+                if !contact.contains(node) {
+                    *value = 0.0;
+                }
+            }
+            passage.fixed.iter().for_each(|&(node, pressure)| start[node] = pressure);
+            base = self.solver.moved(&base, start)?;
+            for (u, load) in base.displacement.iter_mut().zip(behind.load) {
+                *u -= load;
+            }
+            for &(node, _) in &passage.fixed {
+                base.pressure[node] = 0.0;
+            }
+            start = base.pressure.clone();
         }
         let load = self.solver.solve(&equation, start, Cow::Owned(base), &mut directions)?;
         if let Some(carried) = carried {
             if wants_rate {
                 self.instants.clear();
             }
-            self.instants.add(sum, &load.pressure, &carried);
+            self.instants.add(way, &load.pressure, &carried);
         }
         let solved = Equilibrium { count, approach, serves: aim.span(), load, rate };
         Ok((solved, directions))
@@ -379,9 +461,16 @@ impl Solutions {
         self.now.count = left.len();
         self.sums.keep(left);
         self.solved = left.order().to_vec();
-        (self.both, self.passage) = (None, None);
+        (self.passage, self.may_yield) = (None, false);
         self.plastic_sums.keep(left);
     }
+}
+
+/// Which nodes of a grid are among some.
+fn membership(grid: Grid, some: &[usize]) -> Vec<bool> {
+    let mut is_in = vec![false; grid.nodes()];
+    some.iter().for_each(|&node| is_in[node] = true);
+    is_in
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! Solutions as plain numbers, and made again of these.
 
-use super::{Equilibrium, Passage, Solutions};
+use super::{Equilibrium, Passage, Solutions, membership};
 use crate::contact::ContactSequence;
 use crate::krylov::{Field, NodeSet, greatest};
-use crate::updater::conjugate_gradient::both::Both;
 use crate::updater::conjugate_gradient::plastic_sums::PlasticSums;
 use crate::updater::conjugate_gradient::proposed::Proposed;
 use crate::updater::conjugate_gradient::row_sums::RowSums;
@@ -25,10 +24,8 @@ impl Solutions {
         if !is_whole {
             return None;
         }
-        let beside = match &self.both {
-            Some(both) => Some(self.keep_beside(both, contact)?),
-            None => None,
-        };
+        let beside = if self.may_yield { Some(self.keep_beside(contact)?) } else { None };
+        let joined = self.passage.as_ref().map_or(0, |passage| passage.joined.len());
         let set = whole(contact);
         let kept = |field: &Field| kept_field(&set, field);
         let mut all = Kept {
@@ -37,18 +34,14 @@ impl Solutions {
             serves: now.serves,
             load: kept(&now.load),
             rate: kept(&now.rate),
-            proposed: self.proposed.nodes().collect(),
-            proposed_beside: self.proposed.count(),
+            proposed: self.proposed.locals().iter().map(|local| local.node).collect(),
+            // Of those beside which they were proposed, the ones that are left.
+            proposed_beside: contact.len().saturating_sub(joined),
             row_sums: self.proposed.complement().row_sums().to_vec(),
             coarse: self.solver.coarse_nodes().iter().map(|&node| node as usize).collect(),
+            beside,
             ..Kept::default()
         };
-        if let (Some(both), Some(passage)) = (&self.both, &self.passage) {
-            all.proposed = both.locals().iter().map(|local| local.node).collect();
-            all.proposed_beside = contact.len().saturating_sub(passage.joined.len());
-            all.row_sums = vec![0.0; all.proposed.len()];
-            all.beside = beside;
-        }
         // Elsewhere no one asks for them.
         if has_directions(problem, &all) {
             all.directions = self.directions.values().map(<[f32]>::to_vec).collect();
@@ -64,13 +57,13 @@ impl Solutions {
     }
 
     /// The same of what has yielded; `None` unless the window was proposed.
-    fn keep_beside(&self, both: &Both, contact: &ContactSequence) -> Option<KeptBeside> {
+    fn keep_beside(&self, contact: &ContactSequence) -> Option<KeptBeside> {
         let passage = self.passage.as_ref()?;
         let (fields, under) = self.plastic_sums.parts()?;
         let (yielded, pressures): (Vec<usize>, Vec<f64>) = passage.fixed.iter().copied().unzip();
         let set = with_yielded(contact, &yielded);
         Some(KeptBeside {
-            outside: both.outside(),
+            outside: self.proposed.outside(),
             yielded,
             pressures,
             sums: fields.each_ref().map(|field| kept_field(&set, field)),
@@ -112,29 +105,27 @@ impl Solutions {
 
         // The local solutions of what was proposed beside an earlier contact.
         let Self { solver, neighbourhood, .. } = &mut restored;
-        let (mut proposed, mut both) = (Proposed::default(), None);
+        let (mut nodes, mut among) = ([&kept.proposed[..], &[]], kept.proposed_beside);
         if let Some(beside) = &kept.beside {
             let before = before_yields(problem, contact, kept, beside)?;
-            solver.choose(&before, before.len());
-            let (outside, inside) = kept.proposed.split_at(beside.outside);
-            both = Some(Both::new(problem, (neighbourhood, solver), [outside, inside])?);
+            among = before.len();
+            solver.choose(&before, among);
+            nodes = kept.proposed.split_at(beside.outside).into();
         } else {
-            solver.choose(contact, kept.proposed_beside);
+            solver.choose(contact, among);
             for &node in &kept.proposed {
                 if solver.set().contains(node) {
                     let (ix, iy) = problem.grid().coordinates(node);
                     return Err(Error::AlreadyInContact { ix, iy });
                 }
             }
-            let mut sums = kept.row_sums.iter().copied();
-            let nodes = (&kept.proposed[..], kept.proposed_beside);
-            proposed = Proposed::new(problem, (neighbourhood, solver), nodes, |_| {
-                // One for each node, in their order.
-                sums.next().unwrap_or_default()
-            })?;
         }
+        let mut proposed = Proposed::new(problem, (neighbourhood, solver), nodes, among)?;
+        let mut sums = kept.row_sums.iter().copied();
+        // One for each node, in their order.
+        proposed.tell_row_sums(|_| sums.next().unwrap_or_default());
         let mut coarse = NodeSet::new(problem.grid().nodes());
-        let is_in = membership(problem.grid().nodes(), &kept.coarse);
+        let is_in = membership(problem.grid(), &kept.coarse);
         coarse.assign(|node| is_in[node]);
         solver.recall(contact, &coarse);
 
@@ -165,6 +156,7 @@ impl Solutions {
             let values = kept.directions.iter().cloned();
             restored.directions = restored.solver.recall_directions(values, kept.marks)?;
         }
+        let mut fixed = Vec::new();
         if let Some(beside) = &kept.beside {
             let set = with_yielded(contact, &beside.yielded);
             let nodes = problem.grid().nodes();
@@ -182,11 +174,12 @@ impl Solutions {
                 restored.solver.check(field, SUMS_TOLERANCE * most)?;
             }
             restored.plastic_sums = PlasticSums::of_parts(fields, beside.under.clone());
-            let joined = contact.order()[kept.proposed_beside..].to_vec();
-            let fixed = beside.yielded.iter().copied().zip(beside.pressures.iter().copied());
-            restored.passage = Some(Passage { joined, fixed: fixed.collect() });
+            let all = beside.yielded.iter().copied().zip(beside.pressures.iter().copied());
+            fixed = all.collect();
         }
-        restored.both = both;
+        let joined = contact.order()[kept.proposed_beside..].to_vec();
+        restored.passage = Some(Passage { joined, fixed });
+        restored.may_yield = kept.beside.is_some();
         restored.proposed = proposed;
         restored.solved = contact.order().to_vec();
         restored.now = Equilibrium { count, approach, serves: kept.serves, load, rate };
@@ -232,7 +225,7 @@ fn before_yields(
 
 /// A contact and nodes that have yielded.
 fn with_yielded(contact: &ContactSequence, yielded: &[usize]) -> NodeSet {
-    let is_in = membership(contact.grid().nodes(), yielded);
+    let is_in = membership(contact.grid(), yielded);
     let mut set = NodeSet::new(contact.grid().nodes());
     set.assign(|node| is_in[node] || contact.contains(node));
     set
@@ -252,15 +245,6 @@ fn whole(contact: &ContactSequence) -> NodeSet {
     let mut set = NodeSet::new(contact.grid().nodes());
     set.assign(|node| contact.contains(node));
     set
-}
-
-/// Which nodes of a grid are among some.
-fn membership(nodes: usize, some: &[usize]) -> Vec<bool> {
-    let mut is_in = vec![false; nodes];
-    for &node in some {
-        is_in[node] = true;
-    }
-    is_in
 }
 
 /// The values of a field on a contact.

@@ -31,7 +31,7 @@ impl Window {
 
     fn propose(&mut self, nodes: &[usize]) -> Result<(), Error> {
         let Self { problem, contact, solutions } = self;
-        let proposed = solutions.propose(CRITERIA, problem, contact, nodes);
+        let proposed = solutions.propose(CRITERIA, problem, contact, [nodes, &[]], None);
         proposed.map(|_| ())
     }
 

@@ -1,6 +1,6 @@
 //! Proposals of both kinds, and solutions behind yields, against dense ones.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::surface::{Amplitude, SelfAffine};
