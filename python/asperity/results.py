@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from asperity._asperity import State
 
 __all__ = [
+    "ArealParameters",
     "Certificate",
     "Constriction",
     "CriticalConstriction",
@@ -227,6 +228,46 @@ class Estimate:
 
     value: float
     standard_error: float
+
+
+@dataclass(frozen=True)
+class ArealParameters:
+    """Texture of a map by ISO 25178-2, without its tilt.
+
+    Attributes
+    ----------
+    sa, sq, sz, sp, sv : float
+        Arithmetical mean, root mean square and maximum height, highest peak and deepest pit [m].
+    ssk, sku : float
+        Skewness and kurtosis.
+    sdq, sdr : float
+        Root mean square gradient, and developed area ratio.
+    sal : float or None
+        Autocorrelation length [m]: the shortest way on which the autocorrelation falls to 0.2; None where it does not.
+    str : float or None
+        Texture aspect ratio: sal over the longest such way.
+    sk, spk, svk : float
+        Height of the core, reduced height of the peaks and reduced depth of the dales of the material ratio curve [m].
+    smrk1, smrk2 : float
+        Material ratios at the upper and the lower end of the core.
+    """
+
+    sa: float
+    sq: float
+    sz: float
+    sp: float
+    sv: float
+    ssk: float
+    sku: float
+    sdq: float
+    sdr: float
+    sal: float | None
+    str: float | None
+    sk: float
+    spk: float
+    svk: float
+    smrk1: float
+    smrk2: float
 
 
 @dataclass(frozen=True)

@@ -268,6 +268,22 @@ def test_generators_are_those_of_the_library() -> None:
     assert refused.value.kind == "CutoffBelowGrid"
 
 
+def test_texture() -> None:
+    """Two crossed waves: Sal along the diagonals, the longest way along the axes. Half of a wave lies above its mean."""
+    k = 2 * np.pi / 20e-6
+    x, y = np.meshgrid(np.arange(400) * 1e-6, np.arange(300) * 1e-6)
+    surface = asp.Surface(1e-7 * (np.cos(k * x) + np.cos(k * y)), size=(400e-6, 300e-6))
+    found = surface.areal_parameters()
+    sal = np.sqrt(2) * np.arccos(0.2) / k
+    assert found.sal == pytest.approx(sal, rel=0.02)
+    assert found.str == pytest.approx(sal / (np.arccos(-0.6) / k), rel=0.03)
+    assert found.sq == pytest.approx(1e-7, rel=0.01)
+    # Of small slopes half the mean square gradient.
+    assert found.sdr == pytest.approx(0.5 * found.sdq**2, rel=0.01)
+    assert found.spk >= 0 and found.sk > found.spk
+    assert surface.material_ratio([1.0, 0.0, -1.0]) == pytest.approx([0.0, 0.5, 1.0], abs=0.03)
+
+
 def test_profiles() -> None:
     """A sine of 40 waves: Ra = 2 A / pi, Rq = A / sqrt(2), RSm is its length."""
     x = np.arange(4000) * 0.25e-6

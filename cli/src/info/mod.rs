@@ -9,7 +9,9 @@ use std::path::PathBuf;
 
 use asperity::Warning;
 use asperity::io::MeasuredSurface;
-use asperity::surface::{self, Estimate, HeightMap, ProfileParameters, Topography, Trend, Window};
+use asperity::surface::{
+    self, ArealParameters, Estimate, HeightMap, ProfileParameters, Topography, Trend, Window,
+};
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{Failure, Outcome, of_program};
 use asperity_cli::panel;
@@ -45,8 +47,8 @@ pub(crate) struct Options {
     cutoff: Option<f64>,
 
     /// Print one JSON object with format, title, understood, nx, ny, side_x, side_y, missing (in the file), min, max,
-    /// mean, sa, sq, sz, rms_gradient, profile (of one row: cutoff, evaluation_length, ra, rq, rz, rt, rsk, rku, rsm),
-    /// notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
+    /// mean, sa, sq, sz, rms_gradient, texture (of a map without its tilt: ssk, sku, sdr, sal, str, sk, spk, svk, smrk1,
+    /// smrk2), profile (of one row: cutoff, evaluation_length, ra, rq, rz, rt, rsk, rku, rsm), notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
     #[arg(long)]
     json: bool,
 
@@ -63,10 +65,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let measured = options.reading.measured(&options.file)?;
     let whole = Whole::of(&measured, &options.reading)?;
     let profile = profile(&whole, options.cutoff)?;
+    let texture = texture(&whole)?;
+    let found = (texture.as_ref(), profile.as_ref());
     if options.json {
-        answer!("{}", object(&measured, &whole, profile.as_ref()));
+        answer!("{}", object(&measured, &whole, found));
     } else {
-        print(options, &measured, &whole, profile.as_ref())?;
+        print(options, &measured, &whole, found)?;
     }
     let directory = match (&options.out, options.json) {
         (Some(directory), _) => directory.clone(),
@@ -92,8 +96,11 @@ fn warnings(measured: &MeasuredSurface, whole: &Whole) -> Vec<String> {
     known.chain(filled.map(Warning::Surface)).map(|warning| advice::told(&warning)).collect()
 }
 
+/// The parameters of a map whose size is known, and of a profile.
+type Found<'a> = (Option<&'a ArealParameters>, Option<&'a ProfileParameters>);
+
 /// One object for programs.
-fn object(measured: &MeasuredSurface, whole: &Whole, profile: Option<&ProfileParameters>) -> Value {
+fn object(measured: &MeasuredSurface, whole: &Whole, (texture, profile): Found<'_>) -> Value {
     let (nx, ny) = measured.heights.shape();
     let side = |n: usize, cell: f64| n as f64 * cell;
     let map = whole.surface.map();
@@ -113,6 +120,18 @@ fn object(measured: &MeasuredSurface, whole: &Whole, profile: Option<&ProfilePar
         "sq": map.rms_height(),
         "sz": map.peak_to_valley(),
         "rms_gradient": whole.rms_gradient(),
+        "texture": texture.map(|texture| json!({
+            "ssk": texture.ssk,
+            "sku": texture.sku,
+            "sdr": texture.sdr,
+            "sal": texture.sal,
+            "str": texture.str,
+            "sk": texture.core.sk,
+            "spk": texture.core.spk,
+            "svk": texture.core.svk,
+            "smrk1": texture.core.smrk1,
+            "smrk2": texture.core.smrk2,
+        })),
         "profile": profile.map(|profile| json!({
             "cutoff": profile.cutoff,
             "evaluation_length": profile.evaluation_length,
@@ -134,7 +153,7 @@ fn print(
     options: &Options,
     measured: &MeasuredSurface,
     whole: &Whole,
-    profile: Option<&ProfileParameters>,
+    (texture, profile): Found<'_>,
 ) -> Result<(), Failure> {
     let length = |value: f64| quantity(value, "m", 5);
     say!("file          {}", options.file.display());
@@ -187,6 +206,9 @@ fn print(
         levelled.map().skewness(),
         levelled.map().kurtosis()
     );
+    if let Some(texture) = texture {
+        print_texture(texture);
+    }
     if let Some(profile) = profile {
         print_profile(profile);
     }
@@ -201,6 +223,32 @@ fn print(
         say!("warning       {warning}");
     }
     Ok(())
+}
+
+/// The texture of a map whose size is known.
+fn texture(whole: &Whole) -> Result<Option<ArealParameters>, Failure> {
+    let is_map = whole.surface.grid().ny() > 1 && whole.has_size;
+    let found = is_map.then(|| whole.surface.areal_parameters()).transpose();
+    found.map_err(|error| Failure::new("cannot compute the texture of the map", error))
+}
+
+/// In the symbols of ISO 25178-2.
+fn print_texture(texture: &ArealParameters) {
+    let length = |value: f64| quantity(value, "m", 4);
+    let ways = match (texture.sal, texture.str) {
+        (Some(sal), Some(str)) => format!("Sal {}, Str {str:.2}", length(sal)),
+        _ => "no autocorrelation length".to_string(),
+    };
+    let core = texture.core;
+    say!("texture       Sdr {:.3} %, {ways}, without the tilt (ISO 25178)", 100.0 * texture.sdr);
+    say!(
+        "              core Sk {}, peaks Spk {}, dales Svk {}; Smrk1 {:.1} %, Smrk2 {:.1} %",
+        length(core.sk),
+        length(core.spk),
+        length(core.svk),
+        100.0 * core.smrk1,
+        100.0 * core.smrk2
+    );
 }
 
 /// The parameters of a profile: of a surface of one row whose length is known.

@@ -550,6 +550,34 @@ impl Surface {
         statistics::profile_parameters(py, self.topography()?, cutoff)
     }
 
+    /// Texture by ISO 25178-2, without the tilt: heights, skewness, gradient and developed area, autocorrelation length and
+    /// texture aspect ratio, core, peaks and dales of the material ratio curve.
+    ///
+    /// Returns
+    /// -------
+    /// results.ArealParameters
+    fn areal_parameters<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyAny>> {
+        statistics::areal_parameters(py, self.topography()?)
+    }
+
+    /// The part of the surface at or above heights: Smr(c), or Rmr(c) of a profile.
+    ///
+    /// Parameters
+    /// ----------
+    /// heights : array_like
+    ///     Heights [m] in the values of the surface.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    fn material_ratio<'py>(
+        &self,
+        py: Python<'py>,
+        heights: Vec<f64>,
+    ) -> Fallible<Bound<'py, PyAny>> {
+        statistics::material_ratio(py, self.topography()?, &heights)
+    }
+
     /// Fit a self-affine spectrum with roll-off and cut-offs, with standard errors.
     ///
     /// Level a map that does not repeat and put a `window` on it before.

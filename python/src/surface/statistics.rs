@@ -1,6 +1,8 @@
 //! Statistics of surfaces.
 
-use asperity::surface::{Axis, Estimate, RadialBins, SpectralBin, Topography, Trend};
+use asperity::surface::{
+    Axis, Estimate, MaterialRatio, RadialBins, SpectralBin, Topography, Trend,
+};
 use pyo3::prelude::*;
 
 use crate::arrays::{Found, Kind, column};
@@ -93,6 +95,44 @@ pub(super) fn profile_parameters<'py>(
         rku: found.rku,
         rsm: found.rsm,
     })
+}
+
+pub(super) fn areal_parameters<'py>(
+    py: Python<'py>,
+    surface: &Topography,
+) -> Fallible<Bound<'py, PyAny>> {
+    let found = detached(py, || surface.areal_parameters())??;
+    result!(py, "ArealParameters", {
+        sa: found.sa,
+        sq: found.sq,
+        sz: found.sz,
+        sp: found.sp,
+        sv: found.sv,
+        ssk: found.ssk,
+        sku: found.sku,
+        sdq: found.sdq,
+        sdr: found.sdr,
+        sal: found.sal,
+        str: found.str,
+        sk: found.core.sk,
+        spk: found.core.spk,
+        svk: found.core.svk,
+        smrk1: found.core.smrk1,
+        smrk2: found.core.smrk2,
+    })
+}
+
+/// The part of a surface at or above each height.
+pub(super) fn material_ratio<'py>(
+    py: Python<'py>,
+    surface: &Topography,
+    heights: &[f64],
+) -> Fallible<Bound<'py, PyAny>> {
+    let ratios = detached(py, || {
+        let curve = MaterialRatio::of(surface.map());
+        heights.iter().map(|&height| curve.at_height(height)).collect::<Vec<f64>>()
+    })?;
+    Ok(column(py, ratios))
 }
 
 pub(super) fn fit_self_affine<'py>(

@@ -102,6 +102,13 @@ impl Waves {
         }
     }
 
+    /// The waves of the autocorrelation: the mean of all products of heights so far apart.
+    pub(super) fn square(&mut self) {
+        for value in self.coefficients.as_mut_slice() {
+            *value = Complex64::new(value.norm_sqr(), 0.0);
+        }
+    }
+
     /// The mean and the sum of the waves at the nodes.
     pub(super) fn restore(self) -> DMatrix<f64> {
         let Self { grid, mean, mut coefficients } = self;

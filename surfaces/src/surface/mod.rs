@@ -31,7 +31,8 @@ pub use placement::Axis;
 pub use self_affine::{Amplitude, SelfAffine, Spectrum};
 pub use shapes::{Cone, Cylinder, EllipticParaboloid, FlatPunch, Paraboloid};
 pub use statistics::{
-    Estimate, ProfileParameters, RadialBins, SelfAffineFit, SpectralBin, SpectralMoments,
+    ArealParameters, CoreParameters, Estimate, MaterialRatio, ProfileParameters, RadialBins,
+    SelfAffineFit, SpectralBin, SpectralMoments,
 };
 pub use sum::Sum;
 pub use topography::{Filter, FittedTrend, Interpolation, Topography, Trend, Window};

@@ -1,5 +1,5 @@
-//! Numbers of tamaas 2.9.0 and SurfaceTopography 1.27.1 for two maps in `tests/data`, which the study `statistics`
-//! compares with more of.
+//! Numbers of tamaas 2.9.0, SurfaceTopography 1.27.1 and surfalize 0.19.2 for two maps in `tests/data`, with the first
+//! two of which the study `statistics` compares more.
 
 use std::path::PathBuf;
 
@@ -70,6 +70,60 @@ fn surface_topography_finds_the_same() -> Result<(), Error> {
         }
         for (trend, expected) in levelled {
             close(map.level(trend)?.map().rms_height(), expected[k]);
+        }
+    }
+    Ok(())
+}
+
+/// surfalize, of the map without its tilt. Height parameters, gradient and developed area are the same; it takes
+/// autocorrelations that repeat, and the straight line of the core from heights on a grid of its own.
+#[test]
+fn surfalize_finds_the_same_texture() -> Result<(), Error> {
+    let maps = [
+        map("periodic_32x24.npy", (32.0 * 2e-5, 24.0 * 3e-5))?,
+        map("selfaffine_48.npy", (1e-2, 1e-2))?,
+    ];
+    let same = [
+        [2.5474378303458636e-6, 3.140350366670743e-6, 1.618307293499642e-5, 7.638806458060798e-6],
+        [4.03260990181282e-5, 4.927241795090659e-5, 2.908552907756209e-4, 1.368495360132680e-4],
+    ];
+    let shapes = [
+        [-0.15209990894215986, 2.6459090850027187, 0.08327803952568055, 0.0034202899029636131],
+        [-0.22279367316293242, 2.7047350100874663, 0.16056774761123846, 0.012741512046081098],
+    ];
+    let lengths =
+        [(6.974974974974975e-5, 0.559257632894753), (7.406297977836231e-4, 0.8993571780378337)];
+    let cores = [
+        [
+            8.377345619687002e-6,
+            2.4072981363689943e-6,
+            2.8885569367810215e-6,
+            0.08228544,
+            0.89203250,
+        ],
+        [1.4001827540970658e-4, 3.573682598541806e-5, 4.766117953121485e-5, 0.05589529, 0.90627888],
+    ];
+    for (k, map) in maps.iter().enumerate() {
+        let found = map.areal_parameters()?;
+        let heights = [found.sa, found.sq, found.sz, found.sp];
+        for (found, expected) in heights.into_iter().zip(same[k]) {
+            close(found, expected);
+        }
+        for (found, expected) in
+            [found.ssk, found.sku, found.sdq, found.sdr].into_iter().zip(shapes[k])
+        {
+            // Rounding of third and fourth powers.
+            assert!((found / expected - 1.0).abs() < 1e-11, "{found} {expected}");
+        }
+        let near = |found: f64, expected: f64, most: f64| {
+            assert!((found / expected - 1.0).abs() < most, "{found} {expected}");
+        };
+        near(found.sal.unwrap_or_default(), lengths[k].0, 5e-3);
+        near(found.str.unwrap_or_default(), lengths[k].1, 2e-2);
+        let core = found.core;
+        let parts = [core.sk, core.spk, core.svk, core.smrk1, core.smrk2];
+        for (found, expected) in parts.into_iter().zip(cores[k]) {
+            near(found, expected, 1.5e-2);
         }
     }
     Ok(())
