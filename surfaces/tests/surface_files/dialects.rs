@@ -124,6 +124,8 @@ impl Dialect {
 struct Written {
     text: String,
     is_plain: bool,
+    /// Whether a line says that it is a map.
+    is_declared: bool,
     name: &'static str,
 }
 
@@ -181,7 +183,8 @@ fn matrix(map: &Map, dialect: &Dialect, rng: &mut ChaCha8Rng) -> Written {
     };
     // Fewer random numbers are evenly spaced by chance now and then.
     let is_plain = map.is_rough && !along_x && !along_y && nx > 5 && ny > 5;
-    Written { text: dialect.text(&header, &rows), is_plain, name: "map.txt" }
+    let is_declared = !header.is_empty();
+    Written { text: dialect.text(&header, &rows), is_plain, is_declared, name: "map.txt" }
 }
 
 fn list(map: &Map, dialect: &Dialect, rng: &mut ChaCha8Rng) -> Written {
@@ -234,19 +237,21 @@ fn list(map: &Map, dialect: &Dialect, rng: &mut ChaCha8Rng) -> Written {
     let is_plain =
         is_named && !has_index && !has_more && map.nx > 1 && map.ny > 1 && points.len() > 3;
     let file = if rng.random_bool(0.5) { "list.xyz" } else { "list.csv" };
-    Written { text: dialect.text(&header, &rows), is_plain, name: file }
+    Written { text: dialect.text(&header, &rows), is_plain, is_declared: false, name: file }
 }
 
 /// Whether this is the map; sides of it of which nothing was measured may lack if that is said.
-fn is_map(found: &MeasuredSurface, map: &Map) -> bool {
+fn is_map(found: &MeasuredSurface, map: &Map, is_declared: bool) -> bool {
     let is_same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
     let (nx, ny) = found.heights.shape();
     let written = |ix: usize, iy: usize| map.heights[iy * map.nx + ix];
     if found.understood.starts_with("a profile") {
-        // By convention two columns are positions along x and heights, and one column is heights.
+        // By convention two columns are positions along x and heights, and one column is heights, unless a line says
+        // that they are a map.
         let heights = (0..map.ny).map(|iy| written(0, iy));
         let in_order = heights.zip(&found.heights).all(|(a, b)| is_same(a, *b));
-        return map.nx == 2 || map.nx == 1 && (nx, ny) == (map.ny, 1) && in_order;
+        let is_one = map.nx == 1 && (nx, ny) == (map.ny, 1) && in_order;
+        return !is_declared && (map.nx == 2 || is_one);
     }
     let columns =
         if found.understood.contains("empty cells") { 0..=map.nx.abs_diff(nx) } else { 0..=0 };
@@ -282,7 +287,7 @@ proptest! {
             if is_list { list(&map, &dialect, rng) } else { matrix(&map, &dialect, rng) };
         match metre.read_bytes(&written.text, written.name) {
             Ok(found) => prop_assert!(
-                is_map(&found, &map),
+                is_map(&found, &map, written.is_declared),
                 "{found} for {} x {}, {:?} {}, {dialect:?}\n{}",
                 map.nx, map.ny, found.notes, found.understood, written.text
             ),

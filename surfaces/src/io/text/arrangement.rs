@@ -3,10 +3,11 @@
 use super::axes;
 use super::header::Header;
 use super::layout::TextLayout;
-use super::names::Columns;
+use super::names::{self, Columns};
 use super::points;
 use super::table::Table;
 use crate::io::fault::Fault;
+use crate::number::counted;
 
 /// Most columns of a list of points without names.
 const MOST_COLUMNS: usize = 8;
@@ -40,6 +41,14 @@ pub(super) fn of(header: &Header, table: &Table, is_list: bool) -> Result<Found,
     }
     let columns = table.columns;
     if columns <= 2 && table.rows() > FEW_ROWS {
+        if let (Some(line), None) = (header.of_map(), names::of_profile(header, table)) {
+            bail!(
+                "the line '{line}' is one of a map, but {} of {} are taken for a profile: as a map they are read with \
+                 `ReadOptions::layout`, as a profile without this line, or below names of their columns",
+                counted(table.rows(), "row"),
+                counted(columns, "number")
+            );
+        }
         return Ok(Found::Profile);
     }
     match looks(table) {

@@ -29,6 +29,8 @@ pub(super) struct Header {
     pub(super) ends_with_names: bool,
     /// The number that stands for a missing value.
     pub(super) missing: Option<f64>,
+    /// The first line that only maps have: one of its sides, say.
+    of_map: Option<String>,
     /// The first lines that say nothing that is known, and how many there are.
     unread: Vec<String>,
     unread_count: usize,
@@ -59,6 +61,8 @@ const VALUE_UNIT: &str = "value units|jednotky hodnot|einheiten|werteinheiten|un
 /// What other programs call it.
 const DATA_UNIT: &str = "data unit|unit data|exported image units|z-unit|z unit|z units|zunit|unit z|height unit|height units";
 const SIDE_UNIT: &str = "x-unit|x unit|x units|xunit|unit x|xy unit|unit xy|xyunit";
+/// What stands above maps alone, besides sides and numbers of columns and rows.
+const OF_MAP: &str = "scale y|exported image units";
 const COLUMNS: &str = "x-pixels|nx|ncols|number of columns";
 const ROWS: &str = "y-pixels|ny|nrows|number of rows";
 
@@ -73,9 +77,13 @@ impl Header {
         self.ends_with_names = false;
         let words = || line.split_once(char::is_whitespace);
         let pair = line.split_once(['=', ':', '：']);
-        if pair.is_some_and(|(key, value)| self.add_value(key, value.trim()))
-            || words().is_some_and(|(key, value)| self.add_word(key, value.trim()))
-        {
+        let key = pair
+            .filter(|(key, value)| self.add_value(key, value.trim()))
+            .or_else(|| words().filter(|(key, value)| self.add_word(key, value.trim())));
+        if let Some((key, _)) = key {
+            if is_of_map(key) {
+                self.of_map.get_or_insert_with(|| line.to_string());
+            }
             return true;
         }
         if words::could_be(line) {
@@ -93,7 +101,7 @@ impl Header {
     /// A line with a sign between key and value.
     fn add_value(&mut self, key: &str, value: &str) -> bool {
         let key = key.trim().to_lowercase();
-        let is = |names: &str| names.split('|').any(|name| name == key);
+        let is = |names: &str| is_one(&key, names);
         if is(TITLE) {
             self.title = value.to_string();
         } else if is(WIDTH) {
@@ -187,6 +195,18 @@ impl Header {
         self.has_sides() || self.counts()
     }
 
+    /// The first line that only a map has.
+    pub(super) fn of_map(&self) -> Option<&str> {
+        self.of_map.as_deref()
+    }
+
+    /// What is said of a side that stands alone: cells do not follow from it.
+    pub(super) fn lone_side(&self) -> Option<String> {
+        let is_lone = !self.has_sides() && (self.width.is_some() || self.height.is_some());
+        let line = self.of_map().filter(|_| is_lone)?;
+        Some(format!("'{line}' gives one side of two, and is not used"))
+    }
+
     pub(super) fn has_sides(&self) -> bool {
         self.pixel.is_some() || self.width.is_some() && self.height.is_some()
     }
@@ -236,6 +256,17 @@ impl Header {
         let cell = (x.value / nx as f64, y.value * ratio / ny as f64);
         Ok((Some(cell), unit_x.cloned()))
     }
+}
+
+/// Whether a key, in small letters, is one of these names.
+fn is_one(key: &str, names: &str) -> bool {
+    names.split('|').any(|name| name == key)
+}
+
+/// Whether a key that is known stands above maps alone.
+fn is_of_map(key: &str) -> bool {
+    let key = key.trim().to_lowercase();
+    [WIDTH, HEIGHT, OF_MAP].iter().any(|names| is_one(&key, names))
 }
 
 /// How many of another unit a unit is, if they can be compared.

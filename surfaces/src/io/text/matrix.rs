@@ -25,6 +25,7 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
     let told = table.told();
     let mut values = table.values;
     let mut notes = axes.notes;
+    notes.extend(header.lone_side());
     header.apply(&mut values, &mut notes);
     Ok(Channel {
         height_unit: header.value_unit.clone(),

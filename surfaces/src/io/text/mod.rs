@@ -8,7 +8,8 @@
 //! Empty cells, `NaN`, `BAD`, `***` and the like are missing. Of the header those lines are understood that Gwyddion
 //! writes over a matrix or a list, in the languages it speaks, and names of columns with units.
 //!
-//! One column, or two, in more than three rows are a profile, which becomes one row of nodes.
+//! One column, or two, in more than three rows are a profile, which becomes one row of nodes, unless a line above them
+//! is one that only maps have.
 //!
 //! A list is known by names of its columns, by the extension `.xyz`, or by its coordinates; positions in the first row
 //! and column of a matrix by their even steps. Where numbers can be read in several ways, the user has to say which is
@@ -96,9 +97,8 @@ fn generic(
             let map = points::map(&columns, &table)?;
             return list(header, Box::new((columns, map)), &table);
         }
-        let of_profile = names.and_then(|line| names::of_profile(line, &table));
         ensure!(
-            !header.ends_with_names || of_profile.is_some(),
+            !header.ends_with_names || names::of_profile(header, &table).is_some(),
             "the line '{}' above the numbers names columns, but not the {} that there are",
             names.unwrap_or_default(),
             table.columns

@@ -1,5 +1,6 @@
 //! Names of columns: which of them are x, y and z, and their units.
 
+use super::header::Header;
 use super::table::Table;
 use super::words::{Kind, kind, words};
 use crate::io::fault::Fault;
@@ -80,9 +81,10 @@ impl Columns {
     }
 }
 
-/// The units of a position and a height, as a line of two names says; `None` if it is none.
-pub(super) fn of_profile(line: &str, table: &Table) -> Option<[Option<String>; 2]> {
-    let line = line.trim().trim_start_matches(['#', '%']).trim_matches([' ', '"']);
+/// The units of a position and a height, as a line of two names says; `None` if there is none.
+pub(super) fn of_profile(header: &Header, table: &Table) -> Option<[Option<String>; 2]> {
+    let line =
+        header.names.as_ref()?.trim().trim_start_matches(['#', '%']).trim_matches([' ', '"']);
     let ways = ways(line, table);
     let names = ways.into_iter().find(|names| names.len() == table.columns)?;
     match &names[..] {

@@ -15,8 +15,7 @@ const EVEN: f64 = 1e-3;
 pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
     let count = table.rows();
     let shape = shape(count as u64, 1)?;
-    let names = header.names.as_deref();
-    let [of_x, of_z] = names.and_then(|line| names::of_profile(line, &table)).unwrap_or_default();
+    let [of_x, of_z] = names::of_profile(header, &table).unwrap_or_default();
     let told = table.told();
     let mut notes = Vec::new();
     let (mut values, positions) = match table.columns {
@@ -29,6 +28,10 @@ pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
         _ => (table.values, None),
     };
     header.apply(&mut values, &mut notes);
+    let of_map = header.of_map();
+    notes.extend(of_map.map(|line| {
+        format!("'{line}' is a line of maps, but names say that the columns are a profile")
+    }));
     let mut cell = None;
     if let Some(positions) = positions {
         let step;

@@ -1,6 +1,6 @@
 //! Profiles: one column, or two.
 
-use super::{MISSING, TestResult, assert_refused, parsed, shown};
+use super::{MISSING, TestResult, assert_refused, matrix, parsed, shown};
 use crate::io::ReadOptions;
 
 #[test]
@@ -46,6 +46,34 @@ fn uneven_steps_are_made_even() -> TestResult {
     let holed = parsed(text.replace("3 3\n", "3 NaN\n"))?;
     let missing = holed.values.iter().filter(|value| value.is_nan()).count();
     assert_eq!(missing, 2, "{:?}", holed.values);
+    Ok(())
+}
+
+/// What only maps have above two columns leaves a choice, which names of columns make, or the user.
+#[test]
+fn columns_below_a_line_of_maps_are_no_profile_unless_they_say_so() -> TestResult {
+    let rows = "0 5\n0.5 6\n1 7\n1.5 9\n";
+    for line in ["\\Exported image units: m", "# Width: 2 m", "# Höhe: 8 m", "Scale Y: 2 m"] {
+        let key = line.trim_start_matches(['#', '\\', ' ']);
+        let said = format!("the line '{key}' is one of a map, but 4 rows of 2 numbers are taken");
+        assert_refused(&format!("{line}\n{rows}"), &said);
+        assert_refused(&format!("{line}\n5\n6\n7\n9\n"), "but 4 rows of 1 number are taken");
+        let text = format!("{line}\n{rows}");
+        assert_eq!(matrix(text)?.shape, (2, 4), "{line}");
+        let named = parsed(format!("{line}\n# x [m]; z [m]\n{rows}"))?;
+        assert_eq!(named.shape, (4, 1), "{line}");
+        let notes = format!("{:?}", named.notes);
+        assert!(notes.contains("is a line of maps, but names say"), "{line}: {notes}");
+    }
+    Ok(())
+}
+
+/// A side that stands alone gives no cell, and that is said.
+#[test]
+fn one_side_of_two_is_named() -> TestResult {
+    let lone = matrix("# Width: 6 m\n5 1 4\n2 6 2\n5 8 5\n1 2 9\n")?;
+    assert_eq!((lone.shape, lone.cell), ((3, 4), None));
+    assert_eq!(lone.notes, ["'Width: 6 m' gives one side of two, and is not used"]);
     Ok(())
 }
 
