@@ -41,7 +41,7 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
         ("info map.txt --layout matrix", vec!["`--height-unit`"], vec![]),
         (
             "info map.txt --height-unit um",
-            vec!["can be read in 4 ways", "'y-column', 2 rows of 1 heights", "`--layout`"],
+            vec!["can be read in 4 ways", "'y-column', 2 rows of 1 height, ", "`--layout`"],
             vec!["ReadOptions"],
         ),
         ("info points.xyz --height-unit um", vec!["`--lateral-unit` or `--side`"], vec![]),
@@ -49,6 +49,11 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
             "path --surface nan.txt --side 1e-3 --height-unit um --material steel",
             vec!["none of the 2 x 2 heights is finite"],
             vec!["--fill", "fill"],
+        ),
+        (
+            "info nan.txt --side 1e-3 --height-unit um",
+            vec!["cannot use nan.txt", "none of the 2 x 2 heights is finite"],
+            vec!["fill"],
         ),
         ("info nothing.npy", vec!["cannot read nothing.npy"], vec![]),
         (

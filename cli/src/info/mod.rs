@@ -63,7 +63,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         speech::be_quiet();
     }
     let measured = options.reading.measured(&options.file)?;
-    let whole = Whole::of(&measured, &options.reading)?;
+    let whole = Whole::of(&options.file, &measured, &options.reading)?;
     let profile = profile(&whole, options.cutoff)?;
     let texture = texture(&whole)?;
     let found = (texture.as_ref(), profile.as_ref());

@@ -1,5 +1,7 @@
 //! What is known of a measured surface.
 
+use std::path::Path;
+
 use asperity::Grid;
 use asperity::io::MeasuredSurface;
 use asperity::surface::Topography;
@@ -19,8 +21,12 @@ pub(super) struct Whole {
 }
 
 impl Whole {
-    pub(super) fn of(measured: &MeasuredSurface, reading: &Reading) -> Result<Self, Failure> {
-        let failed = |error| Failure::new("cannot use these heights", error);
+    pub(super) fn of(
+        file: &Path,
+        measured: &MeasuredSurface,
+        reading: &Reading,
+    ) -> Result<Self, Failure> {
+        let failed = |error| Failure::new(format!("cannot use {}", file.display()), error);
         let filled = measured.clone().fill_missing().map_err(failed)?;
         let (nx, ny) = filled.heights.shape();
         let has_size = filled.cell.is_some();

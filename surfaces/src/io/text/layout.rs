@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::table::Table;
+use crate::number::counted;
 use crate::{Error, FileError};
 
 /// How the numbers of a text are arranged, where it does not say so itself.
@@ -58,16 +59,16 @@ impl TextLayout {
         let (columns, rows) = (table.columns, table.rows());
         let (along_x, along_y) = self.positions();
         let heights = format!(
-            "{} rows of {} heights",
-            rows - usize::from(along_x),
-            columns - usize::from(along_y)
+            "{} of {}",
+            counted(rows - usize::from(along_x), "row"),
+            counted(columns - usize::from(along_y), "height")
         );
         let what = match self {
             Self::Matrix => heights,
             Self::RowOfX => format!("{heights} below a row of positions along x"),
             Self::ColumnOfY => format!("{heights} beside a column of positions along y"),
             Self::Axes => format!("{heights} below a row and beside a column of positions"),
-            Self::Points => format!("{rows} points"),
+            Self::Points => counted(rows, "point"),
         };
         format!("'{}', {what}", self.name())
     }

@@ -6,6 +6,7 @@ use super::table::Table;
 use crate::io::bytes::shape;
 use crate::io::fault::Fault;
 use crate::io::raw::Channel;
+use crate::number::counted;
 
 /// Row iy of the text holds the nodes (·, iy).
 pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Channel, Fault> {
@@ -30,7 +31,7 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
     Ok(Channel {
         height_unit: header.value_unit.clone(),
         lateral_unit,
-        understood: format!("{rows} rows of {columns} heights, {}", told),
+        understood: format!("{} of {}, {told}", counted(rows, "row"), counted(columns, "height")),
         notes,
         ..Channel::in_metres(shape, values, cell)
     })

@@ -85,7 +85,7 @@ fn generic(
 ) -> Result<Channel, Fault> {
     ensure!(
         layout.is_some() || !table.has_margins || table.rows() > arrangement::FEW_ROWS,
-        "all of its {} lines begin or end with an empty cell: whether that is a node without a height cannot be told from so few; \
+        "every line ({} in all) begins or ends with an empty cell: whether that is a node without a height cannot be told from so few; \
          without such cells, or with `ReadOptions::layout`, it is read",
         table.rows()
     );

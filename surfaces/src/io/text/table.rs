@@ -5,6 +5,7 @@ use crate::io::fault::Fault;
 use super::dialect::{Dialect, is_row, is_row_without_numbers};
 use super::header::Header;
 use crate::io::lines::{Line, Lines};
+use crate::number::counted;
 
 /// The numbers of a file, row by row; NaN where one is missing.
 #[derive(Debug)]
@@ -124,8 +125,9 @@ impl Table {
             ensure!(
                 columns == table.columns,
                 at(line.offset),
-                "line {} has {columns} numbers, but line {first} has {}",
+                "line {} has {}, but line {first} has {}",
                 line.number,
+                counted(columns, "number"),
                 table.columns
             );
         }
