@@ -41,7 +41,7 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
         ("info map.txt --layout matrix", vec!["`--height-unit`"], vec![]),
         (
             "info map.txt --height-unit um",
-            vec!["can be read in 4 ways", "'y-column', 2 rows of 1 height, ", "`--layout`"],
+            vec!["can be read in 4 ways", "'y-column', 2 rows of 1 height beside", "`--layout`"],
             vec!["ReadOptions"],
         ),
         ("info points.xyz --height-unit um", vec!["`--lateral-unit` or `--side`"], vec![]),
