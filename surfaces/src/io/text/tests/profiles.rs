@@ -56,8 +56,8 @@ fn columns_below_a_line_of_maps_are_no_profile_unless_they_say_so() -> TestResul
     for line in ["\\Exported image units: m", "# Width: 2 m", "# Höhe: 8 m", "Scale Y: 2 m"] {
         let key = line.trim_start_matches(['#', '\\', ' ']);
         let said = format!("the line '{key}' is one of a map, but 4 rows of 2 numbers are taken");
-        assert_refused(&format!("{line}\n{rows}"), &said);
-        assert_refused(&format!("{line}\n5\n6\n7\n9\n"), "but 4 rows of 1 number are taken");
+        assert_refused(format!("{line}\n{rows}"), &said);
+        assert_refused(format!("{line}\n5\n6\n7\n9\n"), "but 4 rows of 1 number are taken");
         let text = format!("{line}\n{rows}");
         assert_eq!(matrix(text)?.shape, (2, 4), "{line}");
         let named = parsed(format!("{line}\n# x [m]; z [m]\n{rows}"))?;
