@@ -174,7 +174,11 @@ impl LoadingPath {
             if let Some(plastic) = &run.plastic {
                 run.scalars.place_yielded(plastic.count());
             }
-            let own = run.scalars.state(run.contact_nodes());
+            // A window in which nothing happens ends behind the last state, and up to there all is linear.
+            let mut at_front = run.scalars;
+            at_front.advance(run.scalars.own_approach(&front.contact));
+            let own = at_front.state(run.contact_nodes());
+            let is_behind = run.scalars.approach() >= at_front.approach() * (1.0 - RECOGNISED);
             let stiffness = |state: &ContactState| {
                 state.contact_stiffness.or(state.interfacial_stiffness).unwrap_or_default()
             };
@@ -188,7 +192,7 @@ impl LoadingPath {
             // infinite.
             let is_front =
                 pairs.iter().all(|(a, b)| a == b || (a - b).abs() <= RECOGNISED * b.abs());
-            if !is_front || !run.scalars.is_sound(&own) {
+            if !is_front || !is_behind || !at_front.is_sound(&own) {
                 return Err(not_on_path(front, "load", own.load, "the load of the state"));
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::resumed::{identical, interrupt, steps, through_a_file, whole};
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
-use asperity::loading::{History, LoadingBuilder};
+use asperity::loading::{History, LoadingBuilder, LoadingEnd};
 use asperity::record::LoadingRecord;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
@@ -156,6 +156,30 @@ fn another_updater_goes_on_from_what_states_say() {
         let rest = whole_of(cholesky.resume(record.history()).unwrap());
         agree(&name, 0.0, &rest, &exact[at[0]..]);
     }
+}
+
+/// A window may end behind the last event, and no other may come. The record of such a path was refused: "at step 160
+/// the load there is ..., but should be the load of the state".
+#[test]
+fn a_path_goes_on_behind_a_window_in_which_nothing_happened() {
+    let mut ends = 0;
+    for seed in [1, 2] {
+        let (n, thickness) = (16, 0.7);
+        let grid = Grid::square(n, n as f64).unwrap();
+        let coat = Layer { young: 300.0, poisson: 0.3, thickness: thickness * n as f64 };
+        let base = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+        let kernel = Layered::free(grid, LayeredBody::new(&[coat], base).unwrap()).unwrap();
+        let surface = SelfAffine::new(0.8, 0.5 * n as f64, 2.0, Amplitude::RmsHeight(1.0), seed);
+        let heights = HeightMap::new(surface.unwrap().heights(&grid).unwrap()).unwrap();
+        let builder = on(&kernel, &heights, ConjugateGradient::new());
+        let mut path = builder.clone().build().unwrap();
+        let history = path.run().unwrap();
+        let record = through_a_file(&LoadingRecord::new(&path, history).unwrap());
+        let rest = whole_of(builder.resume(record.history()).unwrap());
+        assert!(rest.is_empty(), "{seed}: {rest:?}");
+        ends += usize::from(path.end() == Some(LoadingEnd::NoMoreEvents));
+    }
+    assert_eq!(ends, 2);
 }
 
 fn whole_of<U: LinearUpdater>(path: LoadingSolver<U>) -> Vec<LoadingState> {
