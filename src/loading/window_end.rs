@@ -277,7 +277,7 @@ mod tests {
     fn what_was_damaged_is_refused() -> Result<(), Error> {
         let updater = ConjugateGradient::new();
         assert!(!is_refused(&updater, &|_| {})?);
-        let changes: [&dyn Fn(&mut WindowEnd); 22] = [
+        let changes: [&dyn Fn(&mut WindowEnd); 23] = [
             &|end| end.ahead[0].step += 1,
             &|end| end.ahead[0].event = ContactEvent::Release,
             &|end| end.ahead[0].node = (99, 0),
@@ -289,6 +289,7 @@ mod tests {
             &|end| iterations(end).joined[0] = 999,
             &|end| iterations(end).joined.truncate(1),
             &|end| iterations(end).kept.approach = f64::INFINITY,
+            &|end| iterations(end).kept.approach *= 1.0 + 1e-4,
             &|end| iterations(end).kept.serves = f64::NAN,
             &|end| iterations(end).kept.load.pressure[7] *= 1.001,
             &|end| iterations(end).kept.load.displacement[7] *= 1.001,

@@ -183,6 +183,14 @@ impl Solutions {
         restored.proposed = proposed;
         restored.solved = contact.order().to_vec();
         restored.now = Equilibrium { count, approach, serves: kept.serves, load, rate };
+        let most = Tolerances::of(criteria, Aim::Span(f64::INFINITY), length, 1.0).load;
+        for &node in contact.order() {
+            let [left, _] = restored.now.left(problem, node);
+            // NaN is none either.
+            let is_closed = left.abs() <= UNSPOILT * most;
+            let quantity = "gap in contact where a window ends";
+            Error::require(quantity, left, is_closed, "closed, as a solution leaves it")?;
+        }
         Ok(restored)
     }
 }
