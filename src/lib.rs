@@ -97,6 +97,7 @@
 pub mod adhesion;
 pub mod bed;
 mod cell_response;
+mod clock;
 pub mod contact;
 pub mod convolution;
 pub mod creep;

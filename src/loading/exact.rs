@@ -1,8 +1,6 @@
 //! Events in windows with a factor, on bodies whose contact only grows: nodes that touch, and with a hardness elastic
 //! nodes that yield.
 
-use std::time::Instant;
-
 use super::contradiction::{Slack, contradiction};
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
 use super::factor_log::FactorLog;
@@ -17,6 +15,7 @@ use super::trial::{Trial, of_nodes};
 use super::tuning::{MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE, TOLERANCE};
 use super::walk::{Carried, Walk};
 use super::window::{SUMS, Watched, Window, of_overlap};
+use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Solution, join_all};
 use crate::{ContactGrowth, Error, Problem};
@@ -81,14 +80,14 @@ impl Exact {
         if self.ranking.is_empty() {
             return Err(self.growth_stopped(run));
         }
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let size = size.min(self.ranking.len());
         let (size, horizon) = self.choose(size, self.multiple(), [approach, first]);
         run.timings.choice += start.elapsed();
         let before = Carried::of(run);
         self.watch(run, updater, size, horizon.min(beyond))?;
 
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let bad_pivot = self.window.play_touches(touches);
         run.timings.events += start.elapsed();
         let mut failure = bad_pivot.map(|bad| run.not_positive_definite(bad));
@@ -100,7 +99,7 @@ impl Exact {
         if self.window.events().len() < played {
             failure = None;
         }
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let queued = self.enqueue(run, before, rates);
         run.timings.events += start.elapsed();
         if !self.window.is_of_touches() {

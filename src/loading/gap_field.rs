@@ -1,7 +1,8 @@
 //! All gaps, from a solution on the contact.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
 use crate::updater::{Behind, Iterations, LinearUpdater, Solution, Solved};
@@ -106,7 +107,7 @@ impl GapField {
                 field[node] = value;
             }
         }
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let [p, p_rate] = &self.pressure;
         self.convolution.apply_two([p, p_rate], [u, u_rate])?;
         self.time += start.elapsed();

@@ -1,7 +1,5 @@
 //! Nodes by the time at which they would touch, or yield.
 
-use std::time::Instant;
-
 use super::contradiction::Slack;
 use super::gap_field::GapLine;
 use super::plastic::Plastic;
@@ -11,6 +9,7 @@ use super::sum::Sum;
 use super::tolerances::ties_from;
 use super::tuning::TOLERANCE;
 use crate::Error;
+use crate::clock::Stopwatch;
 
 /// (time, node) of the nodes to which something may happen, whatever the time is that decides.
 pub(super) type Ranking = Vec<(f64, usize)>;
@@ -18,7 +17,7 @@ pub(super) type Ranking = Vec<(f64, usize)>;
 /// Ranks the nodes out of contact by the time from which on they tie with one that touches, if no other joined, after
 /// checking that contact still grows. Returns when the first would touch.
 pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, Error> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let least = -TOLERANCE * run.greatest_rate();
     let rates = run.contact.order().iter().zip(&run.field.solution().rate);
     for (&node, &y2) in rates {
@@ -81,7 +80,7 @@ pub(super) fn survey(
     ranking: &mut Ranking,
     slack: Slack,
 ) -> Result<Rates, Error> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let approach = run.scalars.approach();
     let hardness = plastic.hardness().values();
     let gaps = plastic.surface().initial_gap();

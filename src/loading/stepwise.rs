@@ -1,7 +1,6 @@
 //! One event at a time: nodes that touch and nodes that leave, for kernels of which nothing is known.
 
 use super::tuning::{ESTIMATED, LEAST_RATE, TIED_EVENTS, TOLERANCE};
-use std::time::Instant;
 
 use super::factor_log::FactorLog;
 use super::phase::Phase;
@@ -10,6 +9,7 @@ use super::state::ContactEvent;
 use super::tolerances::{WindowTolerances, ties_until};
 use super::window::Window;
 use crate::Error;
+use crate::clock::Stopwatch;
 use crate::updater::{Left, Solution};
 
 /// The next event, unless another one comes first.
@@ -171,7 +171,7 @@ impl Stepwise {
         } else {
             run.scalars.renew_stiffness(run.field.solution());
         }
-        let start = Instant::now();
+        let start = Stopwatch::start();
         self.touches.clear();
         self.touches.reserve(run.problem.grid().nodes());
         run.survey(Some(allowed), |node, line| {

@@ -1,9 +1,10 @@
 //! A growing Cholesky factor with the columns of the watched nodes.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::columns::Columns;
 use super::panels::{Panels, remove};
+use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
 use crate::updater::{Schur, WindowFactor, check_count};
 use crate::{Error, Problem};
@@ -75,7 +76,7 @@ impl Factor {
         for &position in positions {
             check_position(position, contact.len())?;
         }
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let out = nodes.len();
         let nodes: Vec<usize> =
             nodes.iter().copied().chain(positions.iter().map(|&p| contact.order()[p])).collect();
@@ -97,8 +98,9 @@ impl Factor {
                 *value = f64::from(u8::from(*position == row));
             }
         });
-        let forward_done = Instant::now();
-        self.timings.forward += forward_done - start;
+        self.timings.forward += start.elapsed();
+
+        let start = Stopwatch::start();
 
         schur.resize(nodes.len())?;
         let matrix = schur.as_mut_slice();
@@ -110,7 +112,7 @@ impl Factor {
             inside.fill(0.0);
         }
         self.columns.subtract_gram(matrix);
-        self.timings.schur += forward_done.elapsed();
+        self.timings.schur += start.elapsed();
         Ok(())
     }
 
@@ -138,7 +140,7 @@ impl Factor {
         check_count(self.watched.len(), touched.watched())?;
         check_count(self.len() + touched.len(), contact.len())?;
         problem.check_nodes(contact.order())?;
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let mut open = vec![true; self.watched.len()];
         for &position in touched.positions() {
             open[position] = false;
@@ -172,7 +174,7 @@ impl Factor {
                 check_position(positions[k - 1], position)?;
             }
         }
-        let start = Instant::now();
+        let start = Stopwatch::start();
         self.watched.clear();
         remove(&mut self.panels, positions);
         self.columns.forget(self.panels.rows());

@@ -9,9 +9,8 @@ mod substitution;
 
 pub use factor::CholeskyTimings;
 
-use std::time::Instant;
-
 use super::{JOINED, Left, LinearUpdater, Schur, Solution, WindowFactor, check_count, join_all};
+use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 use columns::Columns;
@@ -90,7 +89,7 @@ impl LinearUpdater for RecursiveCholesky {
         schur: &mut Schur,
     ) -> Result<(), Error> {
         self.factor.eliminate(problem, contact, nodes, &[], schur)?;
-        let start = Instant::now();
+        let start = Stopwatch::start();
         self.reduced.clear();
         self.reduced.extend(nodes.iter().map(|&node| problem.rhs(node)));
         let columns = &self.factor.columns;
@@ -126,7 +125,7 @@ impl LinearUpdater for RecursiveCholesky {
         solution: &mut Solution,
     ) -> Result<(), Error> {
         check_count(self.factor.len(), contact.len())?;
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let Some(border) = self.border.get(..count) else {
             return check_count(self.border.len(), count);
         };
@@ -188,7 +187,7 @@ impl LinearUpdater for RecursiveCholesky {
     ) -> Result<(), Error> {
         check_count(self.factor.len(), contact.len())?;
         check_count(self.factor.len(), rhs.len())?;
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let panels = &self.factor.panels;
         Columns::solve(panels, rhs);
         let [mut first, mut second] = [0, 1].map(|k| rhs.iter().map(|x| x[k]).collect::<Vec<_>>());
