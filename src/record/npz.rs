@@ -125,10 +125,45 @@ impl LoadingRecord {
         path: impl AsRef<Path>,
         fields: &[(&str, &DMatrix<f64>)],
     ) -> Result<(), Error> {
-        for (_, field) in fields {
-            self.grid.check_shape(field.shape())?;
-        }
+        self.check_fields(fields)?;
         Ok(write_whole(path, |output| self.write(output, fields))?)
+    }
+
+    /// The same into anything that takes bytes: memory, where there is no disk.
+    ///
+    /// # Errors
+    ///
+    /// As [`LoadingRecord::write_npz`]; an error of the output is called that of `name`.
+    ///
+    /// ```
+    /// use std::io::Cursor;
+    ///
+    /// use asperity::record::LoadingRecord;
+    /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
+    ///
+    /// # fn main() -> Result<(), asperity::Error> {
+    /// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+    /// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
+    /// let history = path.run()?;
+    /// let mut bytes = Cursor::new(Vec::new());
+    /// LoadingRecord::new(&path, history)?.write_npz_to(&mut bytes, "path.npz", &[])?;
+    /// assert!(bytes.into_inner().starts_with(b"PK"));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn write_npz_to(
+        &self,
+        output: impl Write + Seek,
+        name: impl AsRef<Path>,
+        fields: &[(&str, &DMatrix<f64>)],
+    ) -> Result<(), Error> {
+        self.check_fields(fields)?;
+        let named = |source| FileError::Io { path: name.as_ref().to_path_buf(), source };
+        self.write(output, fields).map_err(|error| named(error).into())
+    }
+
+    fn check_fields(&self, fields: &[(&str, &DMatrix<f64>)]) -> Result<(), Error> {
+        fields.iter().try_for_each(|(_, field)| Ok(self.grid.check_shape(field.shape())?))
     }
 
     fn write(

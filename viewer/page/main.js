@@ -7,24 +7,49 @@ const PLAY = 14;
 
 class Viewer {
   constructor(paths, data) {
+    this.controls();
+    this.begin(paths, data);
+    new ResizeObserver(() => this.resized()).observe(byId("stage"));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.remake());
+    addEventListener("beforeprint", () => this.forPrint());
+  }
+
+  /** Shows these paths, at their end. */
+  begin(paths, data) {
+    this.stop();
     Object.assign(this, { paths, data, lead: 0, event: paths[0].count - 1, along: "load", logX: false, logY: false });
     this.maps = paths.map((path, index) => new MapView(path, index, paths[0], (lead, event) => this.goTo(event, lead)));
-    byId("maps").append(...this.maps.map(({ figure }) => figure));
+    byId("maps").replaceChildren(...this.maps.map(({ figure }) => figure));
     const several = paths.length > 1;
     for (const id of ["stage", "tables", "words"]) byId(id).classList.toggle("two", several);
-    byId("reads").append(...this.maps.map(({ readout, path }, i) => make("div", {}, several ? make("p", { class: "which" }, `${"AB"[i]}: ${path.record.name} `, this.maps[i].ended) : null, readout)));
+    byId("reads").replaceChildren(...this.maps.map(({ readout, path }, i) => make("div", {}, several ? make("p", { class: "which" }, `${"AB"[i]}: ${path.record.name} `, this.maps[i].ended) : "", readout)));
+    byId("lead-label").hidden = !several;
+    byId("lead").replaceChildren(...paths.map((path, i) => option([i, `${"AB"[i]}: ${path.record.name}`])));
     // On the way to full contact most happens at small loads.
     const { columns } = paths[0], half = paths[0].eventAt("load", 0.5 * columns.load.at(-1));
     this.logX = this.logY = columns.area[half] > 0.75 * columns.area.at(-1);
     const ends = paths.map((path) => path.columns.load.at(-1));
     if (Math.max(...ends) > 3 * Math.min(...ends)) this.logX = true;
-    this.controls();
+    byId("along").value = this.along;
+    byId("log-x").checked = this.logX;
+    byId("log-y").checked = this.logY;
     this.remake();
     this.goTo(this.event);
     this.maps.forEach((map) => map.point(null));
-    new ResizeObserver(() => this.resized()).observe(byId("stage"));
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.remake());
-    addEventListener("beforeprint", () => this.forPrint());
+  }
+
+  /** Whether these are the paths that are shown, which have gone on. */
+  canTake(paths) {
+    return paths.length === this.paths.length && paths.every((path, i) => path.continues(this.paths[i]));
+  }
+
+  /** Paths that have gone on: the slider stays where the reader has left it, or goes on with the end. */
+  take(paths, data) {
+    const isAtEnd = this.event === this.path.count - 1 && !this.playing;
+    Object.assign(this, { paths, data });
+    this.maps.forEach((map, i) => map.take(paths[i], paths[0]));
+    if (isAtEnd) this.event = this.path.count - 1;
+    this.remake();
   }
 
   get path() {
@@ -152,7 +177,6 @@ class Viewer {
       this.remake();
     };
     for (const [id, name] of [["log-x", "logX"], ["log-y", "logY"]]) {
-      byId(id).checked = this[name];
       byId(id).onchange = (event) => {
         this[name] = event.target.checked;
         this.remake();
@@ -172,8 +196,6 @@ class Viewer {
       else delete document.documentElement.dataset.theme;
       this.remake();
     };
-    byId("lead-label").hidden = this.paths.length < 2;
-    byId("lead").append(...this.paths.map((path, i) => option([i, `${"AB"[i]}: ${path.record.name}`])));
     byId("lead").onchange = (event) => {
       const value = this.values[this.event];
       this.lead = Number(event.target.value);
@@ -244,20 +266,8 @@ class Viewer {
   }
 }
 
-/** Says why there is nothing else. */
-function refuse(error) {
-  byId("all").hidden = true;
-  byId("fault").hidden = false;
-  byId("fault").textContent = error instanceof Fault ? error.message : `This page cannot be shown: ${error.message}`;
-}
-
-async function start() {
-  let data;
-  try {
-    data = JSON.parse(byId("data").textContent);
-  } catch (error) {
-    throw new Fault("The file is incomplete: its data end early. Make it again, or fetch it again.");
-  }
+/** The paths of the data of a page, with their names above them; paths that are shown already go on. */
+async function showPaths(data) {
   demand(data.format === 1, "The data of this file are not those of this page.");
   demand(Array.isArray(data.records) && data.records.length > 0, "There is no record in this file.");
   const paths = [];
@@ -267,9 +277,8 @@ async function start() {
   byId("title").textContent = names.join(" and ");
   byId("subtitle").textContent = paths.map((path) => `${path.count} states of contact on ${path.nx} × ${path.ny} nodes, to ${quantity(path.columns.load.at(-1), "N")} and ${digits(100 * path.columns.area.at(-1))} %`).join("; ");
   byId("footer").textContent = `${data.program}${data.command ? `; this page: ${data.command}` : ""}`;
-  byId("fault").hidden = true;
   byId("all").hidden = byId("page-controls").hidden = false;
-  window.viewer = new Viewer(paths, data);
+  if (!window.viewer) window.viewer = new Viewer(paths, data);
+  else if (window.viewer.canTake(paths)) window.viewer.take(paths, data);
+  else window.viewer.begin(paths, data);
 }
-
-addEventListener("DOMContentLoaded", () => start().catch(refuse));

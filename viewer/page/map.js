@@ -35,14 +35,12 @@ const NEWEST = 0.01;
 class MapView {
   /** `scale` is the path whose loads the colours are of: the first of the page, for all maps. */
   constructor(path, index, scale, onEvent) {
-    Object.assign(this, { path, index, scale, onEvent, event: path.count - 1, node: null });
+    Object.assign(this, { index, onEvent, event: path.count - 1, node: null });
     const { nx, ny, record } = path;
     this.canvas = make("canvas", { width: nx, height: ny, class: "nodes" });
     this.marks = make("canvas", { class: "marks", tabindex: 0, role: "img" });
     this.colour = make("select", { "aria-label": "Colour of nodes in contact" });
-    this.colour.append(...[["touch", "load at which it touched"], ["pressure", "pressure"], ["plain", "one colour"]].filter(([value]) => value !== "pressure" || path.states.length).map(option));
     this.ground = make("select", { "aria-label": "Colour of nodes out of contact" });
-    this.ground.append(...[["plain", "plain"], ["gap", "gap"], ["heights", "heights"]].filter(([value]) => value !== "gap" || path.states.length).map(option));
     this.orange = make("input", { type: "checkbox", checked: true });
     this.bar = make("canvas", { class: "bar", width: 256, height: 1, "aria-hidden": "true" });
     this.ticks = make("div", { class: "ticks" });
@@ -52,11 +50,7 @@ class MapView {
     this.box.style.aspectRatio = `${record.lx} / ${record.ly}`;
     this.ended = make("em", {}, "has ended here");
     this.readout = make("dl", { class: "readout" });
-    this.values = SCALARS.filter(([, name]) => path.columns[name]).map(([words, name, unit]) => {
-      const value = make("dd");
-      this.readout.append(make("div", {}, make("dt", {}, words), value));
-      return { name, unit, value };
-    });
+    this.isOrange = make("label", {}, this.orange, " yielded nodes orange");
     const save = make("button", { type: "button", class: "save", onclick: () => saveMap(this) }, "Save map as PNG");
     this.figure = make(
       "figure",
@@ -66,7 +60,7 @@ class MapView {
       this.bar,
       this.ticks,
       this.key,
-      make("div", { class: "row small" }, make("label", {}, "contact ", this.colour), make("label", {}, "elsewhere ", this.ground), path.hasYielded ? make("label", {}, this.orange, " yielded nodes orange") : null, save),
+      make("div", { class: "row small" }, make("label", {}, "contact ", this.colour), make("label", {}, "elsewhere ", this.ground), this.isOrange, save),
       this.under,
     );
     this.context = this.canvas.getContext("2d");
@@ -77,8 +71,26 @@ class MapView {
     this.marks.addEventListener("pointerleave", () => this.point(null));
     this.marks.addEventListener("click", (event) => this.ask(this.nodeAt(event)));
     this.marks.addEventListener("keydown", (event) => this.steer(event));
-    this.recolour();
+    this.take(path, scale);
     this.describe();
+  }
+
+  /** The path, or one that goes on where it ended. */
+  take(path, scale) {
+    Object.assign(this, { path, scale, kept: undefined });
+    this.event = Math.min(this.event, path.count - 1);
+    const choose = (select, options) => {
+      const { value } = select;
+      select.replaceChildren(...options.map(option));
+      if (options.some(([name]) => name === value)) select.value = value;
+    };
+    const some = path.states.length > 0;
+    choose(this.colour, [["touch", "load at which it touched"], ...(some ? [["pressure", "pressure"]] : []), ["plain", "one colour"]]);
+    choose(this.ground, [["plain", "plain"], ...(some ? [["gap", "gap"]] : []), ["heights", "heights"]]);
+    this.isOrange.hidden = !path.hasYielded;
+    this.values = SCALARS.filter(([, name]) => path.columns[name]).map(([words, name, unit]) => ({ words, name, unit, value: make("dd") }));
+    this.readout.replaceChildren(...this.values.map(({ words, value }) => make("div", {}, make("dt", {}, words), value)));
+    this.recolour();
   }
 
   nodeAt(event) {

@@ -31,6 +31,12 @@ class ContactPath {
     await this.readFields(record.fields);
   }
 
+  /** Whether it begins as another path that is shorter or as long. */
+  continues(other) {
+    const { nx, ny, count, nodes } = other;
+    return nx === this.nx && ny === this.ny && count <= this.count && nodes.every((node, event) => node === this.nodes[event] || event === count - 1);
+  }
+
   /** Nodes in contact after each event, and what it takes to undo it. */
   follow() {
     const { count, size } = this;

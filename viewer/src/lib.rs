@@ -26,6 +26,7 @@ mod events;
 mod facts;
 mod fields;
 mod page;
+mod table;
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -36,6 +37,7 @@ use asperity::{Error, LoadingPath};
 use serde_json::{Value, json};
 
 pub use facts::reason;
+pub use table::PathTable;
 
 /// A path for a page.
 pub struct Source<'a> {
@@ -43,19 +45,27 @@ pub struct Source<'a> {
     record: &'a LoadingRecord,
     path: Option<&'a mut LoadingPath>,
     folders: Vec<(PathBuf, Option<SystemTime>)>,
+    has_fields: bool,
 }
 
 impl<'a> Source<'a> {
     /// The path of a record, under a name for people.
     #[must_use]
     pub fn new(name: impl Into<String>, record: &'a LoadingRecord) -> Self {
-        Self { name: name.into(), record, path: None, folders: Vec::new() }
+        Self { name: name.into(), record, path: None, folders: Vec::new(), has_fields: true }
     }
 
     /// With what computes its fields: the path itself, if it is there. Otherwise the record is replayed.
     #[must_use]
     pub fn computed_by(mut self, path: &'a mut LoadingPath) -> Self {
         self.path = Some(path);
+        self
+    }
+
+    /// Without pressure, gap and residuals, which take a solution each: of a path that is being followed.
+    #[must_use]
+    pub fn without_fields(mut self) -> Self {
+        self.has_fields = false;
         self
     }
 
@@ -116,7 +126,7 @@ impl Report {
     ///
     /// [`Error::OutOfRange`] for a record without a state; those of [`LoadingRecord::contact`].
     pub fn add(&mut self, source: Source<'_>) -> Result<(), Error> {
-        let Source { name, record, path, folders } = source;
+        let Source { name, record, path, folders, has_fields } = source;
         let grid = record.grid();
         let Some(last) = record.states().last() else {
             return Err(Error::OutOfRange {
@@ -138,12 +148,13 @@ impl Report {
             [&events, &heights].into_iter().chain(&panels).map(|part| part.to_string().len());
         let taken = page::letters() + texts.sum::<usize>();
         let computed = match path {
+            _ if !has_fields => Ok(Computed::nothing()),
             Some(path) => Computed::by(path, record, taken),
             None => record.replay().and_then(|mut replay| Computed::by(&mut replay, record, taken)),
         };
         let computed = computed.unwrap_or_else(|error| {
             notes.push(format!("pressure, gap and residuals are missing: {error}"));
-            Computed { fields: Value::Null, certificate: Vec::new(), pressure: None }
+            Computed::nothing()
         });
         let (nx, ny) = grid.shape();
         let (lx, ly) = grid.sides();
@@ -173,12 +184,18 @@ impl Report {
     /// The page.
     #[must_use]
     pub fn html(&self) -> String {
-        page::of(&json!({
+        page::of(&self.data())
+    }
+
+    /// What the page shows, as its scripts read it.
+    #[must_use]
+    pub fn data(&self) -> Value {
+        json!({
             "format": 1,
             "program": concat!("asperity ", env!("CARGO_PKG_VERSION")),
             "command": self.command,
             "records": self.records,
-        }))
+        })
     }
 }
 
@@ -191,6 +208,10 @@ struct Computed {
 }
 
 impl Computed {
+    fn nothing() -> Self {
+        Self { fields: Value::Null, certificate: Vec::new(), pressure: None }
+    }
+
     fn by(path: &mut LoadingPath, record: &LoadingRecord, taken: usize) -> Result<Self, Error> {
         let (found, pressure) = fields::of(&record.grid(), record.history(), taken, path)?;
         let certificate = match record.states().last() {

@@ -3,7 +3,8 @@
 use serde_json::Value;
 
 /// What stands for the parts.
-const PARTS: [(&str, &str); 2] = [
+const PARTS: [(&str, &str); 3] = [
+    ("@@viewer@@", include_str!("../page/viewer.html")),
     (
         "@@style@@",
         concat!(include_str!("../vendor/uplot/uPlot.min.css"), include_str!("../page/style.css")),
@@ -24,7 +25,8 @@ const PARTS: [(&str, &str); 2] = [
             include_str!("../page/charts.js"),
             include_str!("../page/words.js"),
             include_str!("../page/save.js"),
-            include_str!("../page/main.js")
+            include_str!("../page/main.js"),
+            include_str!("../page/start.js")
         ),
     ),
 ];

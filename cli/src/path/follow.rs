@@ -7,9 +7,9 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use asperity::LoadingState;
 use asperity::kernel::Layering;
-use asperity::patches::ContactEdge;
-use asperity::{ContactEvent, LoadingState};
+use asperity_report::PathTable;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::interrupt::Interrupt;
@@ -110,21 +110,10 @@ impl Followed {
     }
 }
 
-/// The name of an event in the file.
-fn in_words(event: ContactEvent) -> &'static str {
-    match event {
-        ContactEvent::Touch => "touch",
-        ContactEvent::Yield => "yield",
-        ContactEvent::Release => "release",
-        _ => "limit",
-    }
-}
-
 /// The file `path.csv`: one line for each state. While it is written its name is `path.csv.part`, and what it holds
 /// are whole lines.
 pub(super) struct PathFile {
-    /// The edge of the contact, for its corrected area.
-    edge: ContactEdge,
+    table: PathTable,
     /// The conductances that were asked for, and of which body.
     conductions: Vec<Named>,
     body: Layering,
@@ -140,7 +129,7 @@ impl PathFile {
     /// Begins the file in a directory, in place of one that may be there from another path.
     pub(super) fn create(
         directory: &Path,
-        edge: ContactEdge,
+        table: PathTable,
         (conductions, body): (Vec<Named>, Layering),
     ) -> Result<Self, Failure> {
         let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
@@ -152,59 +141,38 @@ impl PathFile {
             File::create(&part)
         };
         let output = begin().map_err(|error| Failure::writing(&part, error))?;
-        let mut lines = "step,ix,iy,event,approach,load,contact_area,contact_area_fraction,mean_gap,\
-                    contact_stiffness,interfacial_stiffness,corrected_contact_area,approach_error,yielded_area_fraction"
-            .to_string();
+        let mut lines = PathTable::HEADER.to_string();
         for (name, _) in &conductions {
             lines += &format!(",{name}");
         }
         lines.push('\n');
-        Ok(Self { edge, conductions, body, name, part, output, lines, waiting: 0 })
+        Ok(Self { table, conductions, body, name, part, output, lines, waiting: 0 })
     }
 
     /// The whole file at once, in place of the one that is there.
     pub(super) fn write_whole(
         directory: &Path,
-        edge: ContactEdge,
+        table: PathTable,
         conductions: (Vec<Named>, Layering),
         states: &[LoadingState],
     ) -> Result<(), Failure> {
-        let mut file = Self::create(directory, edge, conductions)?;
+        let mut file = Self::create(directory, table, conductions)?;
         states.iter().try_for_each(|state| file.write(state))?;
         file.finish().map(drop)
     }
 
-    /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
+    /// Adds a state.
     fn write(&mut self, state: &LoadingState) -> Result<(), Failure> {
-        let (ix, iy) = state.node;
-        self.edge
-            .follow(state.event, state.node)
-            .map_err(|error| Failure::writing(&self.part, error))?;
-        // Empty where there is none: on a periodic half-space.
-        let printed = |stiffness: Option<f64>| {
-            stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
-        };
-        // Writing to a text cannot fail.
-        let _ = write!(
-            self.lines,
-            "{},{ix},{iy},{},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e},{:e}",
-            state.step,
-            in_words(state.event),
-            state.contact.approach,
-            state.contact.load,
-            state.contact.contact_area,
-            state.contact.contact_area_fraction,
-            state.contact.mean_gap,
-            printed(state.contact.contact_stiffness),
-            printed(state.contact.interfacial_stiffness),
-            self.edge.corrected_area(),
-            state.approach_error,
-            state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction),
-        );
+        let line = self.table.line(state).map_err(|error| Failure::writing(&self.part, error))?;
+        self.lines += &line;
         for (_, conduction) in &self.conductions {
             let conductance = conduction.of(&state.contact, self.body);
             let conductance = conductance.map_err(|error| Failure::writing(&self.part, error))?;
-            let _ = write!(self.lines, ",{}", printed(conductance));
+            self.lines.push(',');
+            if let Some(conductance) = conductance {
+                // Writing to a text cannot fail.
+                let _ = write!(self.lines, "{conductance:e}");
+            }
         }
         self.lines.push('\n');
         self.waiting += 1;

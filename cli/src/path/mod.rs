@@ -30,11 +30,11 @@ mod updater;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
-use asperity::patches::ContactEdge;
 use asperity::{LoadingPath, LoadingState};
 use asperity_cli::number::counted;
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, note, panel, say, speech};
+use asperity_report::PathTable;
 use clap::ArgMatches;
 use nalgebra::DMatrix;
 
@@ -155,12 +155,12 @@ fn follow_one(
     let mut solver = job.solver()?;
     panel::register_font()?;
     let settings = job.settings().write(&options.out)?;
-    let edge = ContactEdge::new(job.grid(), job.boundary());
+    let table = PathTable::new(job.grid(), job.boundary());
     // The stiffness on unloading, by which a contact conducts that yields, is computed at the end for all states at
     // once.
     let conducts_at_end = job.has_hardness() && options.joint.needs_stiffness(&conductions);
     let columns = if conducts_at_end { Vec::new() } else { conductions.clone() };
-    let file = PathFile::create(&options.out, edge, (columns, job.layering()))?;
+    let file = PathFile::create(&options.out, table, (columns, job.layering()))?;
 
     let start = Instant::now();
     let mut followed = Followed::new(&job, file, options.save_every)?;
@@ -186,14 +186,14 @@ fn follow_one(
     let mut kept = record.map(|name| save(name, &job, &solver, &states, &[]));
     outcome.written(file.finish());
     if conducts_at_end {
-        let edge = ContactEdge::new(job.grid(), job.boundary());
+        let table = PathTable::new(job.grid(), job.boundary());
         outcome.note(
             solver
                 .add_unloading_stiffness(&mut states)
                 .map_err(|error| Failure::new("cannot compute the stiffness on unloading", error))
                 .and_then(|()| {
                     let conductions = (conductions.clone(), job.layering());
-                    PathFile::write_whole(&options.out, edge, conductions, &states)
+                    PathFile::write_whole(&options.out, table, conductions, &states)
                 }),
         );
     }
