@@ -11,7 +11,7 @@ const LARGEST = 400e6;
 
 let surface, path, isRunning = false, elapsed = 0;
 
-const ready = init().then(() => {
+const ready = init({ module_or_path: new URL("asperity_bg.wasm", import.meta.url) }).then(() => {
   begin();
   postMessage({ type: "ready", materials: JSON.parse(materials()) });
 });
