@@ -1,6 +1,7 @@
 //! A surface of the page: from a file, or generated.
 
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
+use asperity::number::quantity;
 use asperity::surface::{Amplitude, Topography, Trend, Warning};
 use asperity::{Boundary, Grid, SelfAffine, SurfaceError};
 
@@ -77,11 +78,10 @@ impl Heights {
         Ok(Self {
             name: format!("generated, seed {}", spectrum.seed()),
             source: format!(
-                "self-affine: Hurst exponent {}, wavelengths from {:.4e} m, roll-off at {:.4e} m, seed {}",
+                "self-affine: Hurst exponent {}, shortest wavelength {}, roll-off at {}",
                 spectrum.hurst(),
-                spectrum.short_cutoff_wavelength(),
-                spectrum.rolloff_wavelength(),
-                spectrum.seed()
+                quantity(spectrum.short_cutoff_wavelength(), "m", 4),
+                quantity(spectrum.rolloff_wavelength(), "m", 4)
             ),
             notes: Vec::new(),
             warnings: warnings.iter().map(|warning| of_page(&warning.to_string())).collect(),
@@ -173,9 +173,10 @@ fn spectrum(asked: &Generation, grid: &Grid) -> Result<SelfAffine, Fault> {
     let cell = grid.dx();
     if 2.0 * cell > rolloff {
         return Err(Fault::new(format!(
-            "{} nodes a side are too few for the roll-off wavelength of {rolloff:e} m: two cells are {:e} m",
+            "{} nodes a side are too few for the roll-off wavelength of {}: two cells are {}",
             grid.nx(),
-            2.0 * cell
+            quantity(rolloff, "m", 4),
+            quantity(2.0 * cell, "m", 4)
         )));
     }
     let least = match asked.rolloff {

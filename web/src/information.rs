@@ -61,10 +61,51 @@ fn of_surface(surface: &Topography) -> Vec<Value> {
         fact("peak to valley Sz", json!(map.peak_to_valley()), "m"),
         fact("skewness Ssk", json!(map.skewness()), ""),
         fact("kurtosis Sku", json!(map.kurtosis()), ""),
-        fact("slope of the mean plane along x, along y", json!([sx, sy]), ""),
+        fact("slope of the mean plane along x", json!(sx), ""),
+        fact("the same along y", json!(sy), ""),
     ];
     if let Ok(gradient) = map.rms_gradient(grid) {
         facts.push(fact("rms gradient", json!(gradient), ""));
     }
     facts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fault::Fault;
+    use crate::request::{Generation, Reading};
+
+    #[test]
+    fn what_is_missing_is_asked_for() -> Result<(), Fault> {
+        let mut reading = Reading { height_unit: Some("nm".to_string()), ..Reading::default() };
+        let text = b"1 2 nan\n4 5 6\n7 8 9\n";
+        let needs =
+            |reading: &Reading| Ok(of(&Heights::read(text, "a.txt", reading)?)["needs"].clone());
+        assert_eq!(needs(&reading)?, json!(["side", "fill"]));
+        reading.side = Some(1e-3);
+        assert_eq!(needs(&reading)?, json!(["fill"]));
+        reading.fill = true;
+        assert_eq!(needs(&reading)?, json!([]));
+        Ok::<(), Fault>(())
+    }
+
+    /// The example of the program: 50 µm, and 8 cells of the shortest wave.
+    #[test]
+    fn facts_are_those_of_the_surface() -> Result<(), Fault> {
+        let made =
+            of(&Heights::generate(&Generation { nodes: Some(64), ..Generation::default() })?);
+        let facts = made["facts"].as_array().cloned().unwrap_or_default();
+        let value = |name: &str| {
+            let fact = facts.iter().find(|fact| fact["name"] == name);
+            fact.and_then(|fact| fact["value"].as_f64()).unwrap_or(f64::NAN)
+        };
+        // The generator scales what it made to its height, to rounding.
+        assert!((value("rms height Sq") / 50e-6 - 1.0).abs() < 1e-12);
+        assert!(value("rms gradient") > 0.0 && made["needs"] == json!([]));
+        let source = made["source"].as_str().unwrap_or_default();
+        assert!(source.contains("shortest wavelength 1.25 mm, roll-off at 2.5 mm"), "{source}");
+        assert!(materials().contains(r#""name":"steel""#));
+        Ok(())
+    }
 }
