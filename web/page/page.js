@@ -201,6 +201,8 @@ async function show(data) {
   isShowing = false;
 }
 
+const FIELDS = "; pressure and gap are being computed";
+
 const ANSWERS = {
   ready({ materials }) {
     const names = materials.map(({ name, young }) => [name, `${name} (${quantity(young, "Pa")})`]);
@@ -212,13 +214,14 @@ const ANSWERS = {
   },
   surface: ({ information, picture }) => showSurface(information, picture),
   progress: ({ progress, seconds }) => showProgress(progress, seconds),
+  fields: () => (byId("told").textContent += FIELDS),
   "so-far": ({ data }) => show(data),
   whole({ data, isOver }) {
     running(false);
     if (!data) return;
     byId("go-on").hidden = isOver;
     byId("saves").hidden = false;
-    byId("told").textContent += isOver ? "; done" : "; stopped";
+    byId("told").textContent = byId("told").textContent.replace(FIELDS, "") + (isOver ? "; done" : "; stopped");
     show(data);
   },
   saved: ({ made: [name, type, content] }) => saveBlob(name, new Blob([content], { type })),

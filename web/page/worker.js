@@ -78,6 +78,7 @@ async function run() {
   isRunning = false;
   if (failed?.kind !== "broken" && path.states() > 0) {
     progress();
+    postMessage({ type: "fields" });
     told("whole", () => postMessage({ type: "whole", data: path.whole(), isOver: !more }));
   } else postMessage({ type: "whole", data: null, isOver: true });
   if (failed) postMessage({ type: "fault", of: "path", fault: failed });

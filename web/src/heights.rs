@@ -62,7 +62,7 @@ impl Heights {
             warnings.extend(Warning::of_surface(&surface));
             Found::Whole(surface)
         };
-        let warnings = warnings.iter().map(|warning| of_page(&warning.to_string())).collect();
+        let warnings = said(&warnings, &found);
         Ok(Self { name: name.to_string(), source, notes, warnings, missing, found })
     }
 
@@ -75,6 +75,7 @@ impl Heights {
         let spectrum = spectrum(asked, &grid)?;
         let surface = Topography::sample(&spectrum, grid)?;
         let warnings = Warning::of_surface(&surface);
+        let found = Found::Whole(surface);
         Ok(Self {
             name: format!("generated, seed {}", spectrum.seed()),
             source: format!(
@@ -84,9 +85,9 @@ impl Heights {
                 quantity(spectrum.rolloff_wavelength(), "m", 4)
             ),
             notes: Vec::new(),
-            warnings: warnings.iter().map(|warning| of_page(&warning.to_string())).collect(),
+            warnings: said(&warnings, &found),
             missing: 0,
-            found: Found::Whole(surface),
+            found,
         })
     }
 
@@ -119,6 +120,15 @@ impl Heights {
         };
         heights.iter().map(level).collect()
     }
+}
+
+/// What looks wrong, with what there may be no room for.
+fn said(warnings: &[Warning], found: &Found) -> Vec<String> {
+    let room = match found {
+        Found::Whole(surface) => room::warning(surface.grid(), Boundary::Free),
+        Found::Part(_) => None,
+    };
+    warnings.iter().map(|warning| of_page(&warning.to_string())).chain(room).collect()
 }
 
 /// What is asked of the reader.

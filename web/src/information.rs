@@ -80,14 +80,15 @@ mod tests {
     fn what_is_missing_is_asked_for() -> Result<(), Fault> {
         let mut reading = Reading { height_unit: Some("nm".to_string()), ..Reading::default() };
         let text = b"1 2 nan\n4 5 6\n7 8 9\n";
-        let needs =
-            |reading: &Reading| Ok(of(&Heights::read(text, "a.txt", reading)?)["needs"].clone());
+        let needs = |reading: &Reading| -> Result<Value, Fault> {
+            Ok(of(&Heights::read(text, "a.txt", reading)?)["needs"].clone())
+        };
         assert_eq!(needs(&reading)?, json!(["side", "fill"]));
         reading.side = Some(1e-3);
         assert_eq!(needs(&reading)?, json!(["fill"]));
         reading.fill = true;
         assert_eq!(needs(&reading)?, json!([]));
-        Ok::<(), Fault>(())
+        Ok(())
     }
 
     /// The example of the program: 50 µm, and 8 cells of the shortest wave.

@@ -20,36 +20,63 @@ pub(crate) fn budget(grid: &Grid) -> usize {
     (ALL as u64).saturating_sub(taken) as usize
 }
 
-/// `Ok` if a path on a grid gets to full contact.
+/// `Ok` if a path on a grid can begin.
 pub(crate) fn check(grid: &Grid, boundary: Boundary) -> Result<(), Fault> {
-    if fits(grid, boundary)? {
+    let begins = |grid: &Grid| fits(grid, boundary, LoadingSolver::check_room);
+    if begins(grid)? {
         return Ok(());
     }
-    // The largest side that fits, by halves.
-    let (mut largest, mut beyond) = (1, grid.nx().max(grid.ny()));
-    while largest + 1 < beyond {
-        let middle = largest.midpoint(beyond);
-        match Grid::square(middle, 1.0).is_ok_and(|grid| fits(&grid, boundary) == Ok(true)) {
-            true => largest = middle,
-            false => beyond = middle,
-        }
-    }
+    let largest = largest(grid, |grid| begins(grid) == Ok(true));
     let (nx, ny) = grid.shape();
     Err(Fault {
         kind: Kind::Memory,
         message: format!(
-            "a browser gives this page 2 GB of memory, which is not enough for {nx} × {ny} nodes: the largest square grid has {largest} × \
-             {largest}. Use a part of the surface or a coarser grid here, or the program, which may use all memory of the machine"
+            "a browser gives this page 2 GB of memory, which is not enough for {nx} × {ny} nodes: the largest square \
+             grid has {largest} × {largest}. Use a part of the surface or a coarser grid here, or the program, which \
+             may use all memory of the machine"
         ),
     })
 }
 
-fn fits(grid: &Grid, boundary: Boundary) -> Result<bool, Fault> {
+/// What is said of a grid on which a path may end for want of memory.
+pub(crate) fn warning(grid: &Grid, boundary: Boundary) -> Option<String> {
+    let is_enough =
+        |grid: &Grid| fits(grid, boundary, LoadingSolver::check_room_to_full_contact) == Ok(true);
+    if is_enough(grid) {
+        return None;
+    }
+    let largest = largest(grid, is_enough);
+    Some(format!(
+        "a browser gives this page 2 GB of memory: a path on this grid may end before its target, and what is found \
+         until then is kept. Up to {largest} × {largest} nodes there is enough to full contact; the program may use \
+         all memory of the machine"
+    ))
+}
+
+/// The largest side, less than that of a grid, whose square fits, by halves.
+fn largest(grid: &Grid, fits: impl Fn(&Grid) -> bool) -> usize {
+    let (mut largest, mut beyond) = (1, grid.nx().max(grid.ny()));
+    while largest + 1 < beyond {
+        let middle = largest.midpoint(beyond);
+        match Grid::square(middle, 1.0).is_ok_and(|grid| fits(&grid)) {
+            true => largest = middle,
+            false => beyond = middle,
+        }
+    }
+    largest
+}
+
+/// Whether the budget of a grid is enough.
+fn fits(
+    grid: &Grid,
+    boundary: Boundary,
+    check: fn(&Grid, Boundary, Option<usize>) -> Result<(), Error>,
+) -> Result<bool, Fault> {
     let budget = budget(grid);
     if budget == 0 {
         return Ok(false);
     }
-    match LoadingSolver::check_room_to_full_contact(grid, boundary, Some(budget)) {
+    match check(grid, boundary, Some(budget)) {
         Ok(()) => Ok(true),
         Err(Error::MemoryBudget { .. }) => Ok(false),
         Err(error) => Err(error.into()),
@@ -60,22 +87,29 @@ fn fits(grid: &Grid, boundary: Boundary) -> Result<bool, Fault> {
 mod tests {
     use super::*;
 
-    /// 1024² nodes fit, which take some 0.7 GB; what does not is told with what does.
+    /// The grid of 512² nodes has room to full contact; what does not fit is told with what does.
     #[test]
     fn the_largest_grid_is_told() -> Result<(), Fault> {
-        assert_eq!(check(&Grid::square(1024, 1.0)?, Boundary::Free), Ok(()));
-        for side in [4096, 40_000, 400_000] {
+        assert_eq!(check(&Grid::square(512, 1.0)?, Boundary::Free), Ok(()));
+        assert_eq!(warning(&Grid::square(512, 1.0)?, Boundary::Free), None);
+        for side in [6000, 40_000, 400_000] {
             let refused = check(&Grid::square(side, 1.0)?, Boundary::Free);
             let fault = refused.err().unwrap_or_else(|| Fault::new("none"));
             assert_eq!(fault.kind, Kind::Memory, "{side}");
             assert!(fault.message.contains(&format!("{side} × {side} nodes")), "{}", fault.message);
-            let largest =
-                fault.message.split("has ").nth(1).and_then(|text| text.split(' ').next());
-            let largest: usize = largest.and_then(|text| text.parse().ok()).unwrap_or(0);
-            assert!((1024..4096).contains(&largest), "{largest}");
+            let largest = number_behind(&fault.message, "grid has ");
+            assert!((1024..6000).contains(&largest), "{largest}");
             assert_eq!(check(&Grid::square(largest, 1.0)?, Boundary::Free), Ok(()));
             assert!(check(&Grid::square(largest + 1, 1.0)?, Boundary::Free).is_err());
+            let said = warning(&Grid::square(largest, 1.0)?, Boundary::Free).unwrap_or_default();
+            let enough = number_behind(&said, "Up to ");
+            assert!((512..largest).contains(&enough), "{said}");
         }
         Ok(())
+    }
+
+    fn number_behind(text: &str, words: &str) -> usize {
+        let number = text.split(words).nth(1).and_then(|rest| rest.split(' ').next());
+        number.and_then(|number| number.parse().ok()).unwrap_or(0)
     }
 }

@@ -22,6 +22,8 @@ pub(crate) struct Running {
     bodies: Vec<(f64, f64)>,
     path: LoadingPath,
     states: Vec<LoadingState>,
+    /// What was made of the states so far, since its fields take long.
+    page: Option<Report>,
 }
 
 impl Running {
@@ -49,12 +51,15 @@ impl Running {
             builder = builder.hardness(hardness);
         }
         let path = builder.build()?.into_path();
-        Ok(Self { name: heights.name.clone(), bodies, path, states: Vec::new() })
+        Ok(Self { name: heights.name.clone(), bodies, path, states: Vec::new(), page: None })
     }
 
     /// Goes on by one state; `false` at the end.
     pub(crate) fn step(&mut self) -> Result<bool, Fault> {
         let next = self.path.next().transpose()?;
+        if next.is_some() {
+            self.page = None;
+        }
         self.states.extend(next);
         Ok(next.is_some())
     }
@@ -98,11 +103,17 @@ impl Running {
         Ok(report.data().to_string())
     }
 
-    fn page(&mut self) -> Result<Report, Fault> {
-        let record = self.made()?;
-        let mut report = Report::new().made_by("asperity in the browser");
-        report.add(Source::new(&self.name, &record).computed_by(&mut self.path))?;
-        Ok(report)
+    fn page(&mut self) -> Result<&Report, Fault> {
+        let page = match self.page.take() {
+            Some(page) => page,
+            None => {
+                let record = self.made()?;
+                let mut report = Report::new().made_by("asperity in the browser");
+                report.add(Source::new(&self.name, &record).computed_by(&mut self.path))?;
+                report
+            }
+        };
+        Ok(self.page.insert(page))
     }
 
     /// The same with pressure and gap, and all that is said of it.
