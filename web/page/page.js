@@ -133,6 +133,7 @@ function showFault({ kind, message, channels }) {
   tell("");
   if (kind === "height-unit") ask(`In which unit are the heights? ${message}`, kind);
   else if (kind === "lateral-unit") ask(`In which unit are the lengths along x and y? ${message}`, kind);
+  else if (kind === "layout") ask(`How are the numbers arranged? ${message}`, kind);
   else if (kind === "channel") {
     byId("channel").replaceChildren(...channels.map((name) => option([name, name])));
     byId("channel").closest("label").hidden = false;

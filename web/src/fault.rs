@@ -10,6 +10,8 @@ pub(crate) enum Kind {
     HeightUnit,
     /// It asks for the unit along x and y.
     LateralUnit,
+    /// It asks how the numbers of a text are arranged.
+    Layout,
     /// It asks which of these maps.
     Channel(Vec<String>),
     /// It says what there is room for.
@@ -37,6 +39,7 @@ impl Fault {
             Kind::HeightUnit => ("height-unit", None),
             Kind::LateralUnit => ("lateral-unit", None),
             Kind::Channel(channels) => ("channel", Some(channels)),
+            Kind::Layout => ("layout", None),
             Kind::Memory => ("memory", None),
             Kind::Other => ("other", None),
         };
@@ -54,6 +57,7 @@ impl From<Error> for Fault {
             (Some(FileError::NoUnit { quantity: "heights", .. }), _) => Kind::HeightUnit,
             (Some(FileError::NoUnit { .. }), _) => Kind::LateralUnit,
             (Some(FileError::WhichChannel { channels, .. }), _) => Kind::Channel(channels.clone()),
+            (Some(FileError::BadFile { reason, .. }), _) if reason.contains(LAYOUT) => Kind::Layout,
             (_, Error::MemoryBudget { .. }) => Kind::Memory,
             _ => Kind::Other,
         };
@@ -67,6 +71,9 @@ impl From<SurfaceError> for Fault {
     }
 }
 
+/// What a reader of texts asks for, in its error.
+const LAYOUT: &str = "`ReadOptions::layout`";
+
 /// Words of the library in those of the page.
 pub(crate) fn of_page(text: &str) -> String {
     const WORDS: [(&str, &str); 8] = [
@@ -75,7 +82,7 @@ pub(crate) fn of_page(text: &str) -> String {
         ("`ReadOptions::lateral_unit`", "“unit along x and y”"),
         ("`ReadOptions::side`", "“side along x”"),
         ("`ReadOptions::channel`", "“map”"),
-        ("`ReadOptions::layout`", "“layout of a text”"),
+        (LAYOUT, "“layout of a text”"),
         ("`ReadOptions::rows_are_y`", "“rows are y”"),
         ("`Topography::level`", "“level: plane”"),
     ];
@@ -95,8 +102,10 @@ mod tests {
     /// What the page has to ask for is told apart from what nobody can read.
     #[test]
     fn kinds_are_told_apart() {
-        let unit = fault_of("1 2 3\n4 5 6\n7 8 9\n");
+        let unit = fault_of("3 1 4 1\n5 9 2 6\n5 3 5 8\n");
         assert_eq!(unit.map(|fault| fault.kind), Some(Kind::HeightUnit));
+        let several = fault_of("1 2 3\n4 5 6\n7 8 9\n");
+        assert_eq!(several.map(|fault| fault.kind), Some(Kind::Layout));
         let nothing = fault_of("no numbers at all");
         assert_eq!(nothing.map(|fault| fault.kind), Some(Kind::Other));
         let memory = Error::MemoryBudget { needed: 2, budget: 1, nodes_that_fit: 0 };

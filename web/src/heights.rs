@@ -209,7 +209,7 @@ mod tests {
     use super::*;
     use crate::fault::Kind;
 
-    const TEXT: &str = "1 2 3 4\n5 6 nan 8\n9 10 11 12\n";
+    const TEXT: &str = "3 1 4 1\n5 9 nan 6\n5 3 5 12\n";
 
     /// The page asks for the unit, the side and the missing nodes, one after the other.
     #[test]
@@ -221,7 +221,7 @@ mod tests {
         let sizeless = read(&reading)?;
         assert!(sizeless.surface().is_err_and(|fault| fault.message.contains("how large")));
         assert_eq!(sizeless.picture()[6], 0);
-        assert_eq!([sizeless.picture()[0], sizeless.picture()[11]], [1, 255]);
+        assert_eq!([sizeless.picture()[1], sizeless.picture()[11]], [1, 255]);
         reading.side = Some(4e-3);
         let holed = read(&reading)?;
         assert!(

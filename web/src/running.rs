@@ -81,12 +81,16 @@ impl Running {
         };
         let targets = self.path.targets();
         let shares = targets.iter().map(share);
+        let share = match self.path.end() {
+            None => shares.fold(last.contact_area_fraction, f64::max).min(1.0),
+            Some(_) => 1.0,
+        };
         json!({
             "states": self.states.len(),
             "nodes": last.contact_nodes,
             "load": last.load,
             "area": last.contact_area_fraction,
-            "share": shares.fold(last.contact_area_fraction, f64::max).min(1.0),
+            "share": share,
             "handed_over_at": self.path.handed_over_at(),
         })
     }
@@ -128,6 +132,7 @@ impl Running {
 
     /// The record, with the fields of the last state.
     pub(crate) fn npz(&mut self) -> Result<Vec<u8>, Fault> {
+        self.path.present()?;
         let record = self.made()?;
         let found = self.path.fields()?;
         let mut fields = vec![("pressure", &found.pressure), ("gap", &found.gap)];
@@ -209,7 +214,9 @@ mod tests {
             parse(r#"{"side": 4e-3, "side_y": 1e-3, "height_unit": "um", "layout": "matrix"}"#)?;
         let row = Heights::read(b"1 2 3 2 1 0 1 2\n", "row.txt", &reading)?;
         let job = |half_space: &str| {
-            parse::<Job>(&format!(r#"{{"e_star": 1e9, "half_space": "{half_space}"}}"#))
+            parse::<Job>(&format!(
+                r#"{{"e_star": 1e9, "half_space": "{half_space}", "target": {{"area_fraction": 0.5}}}}"#
+            ))
         };
         assert!(
             Running::new(&row, &job("free")?).is_err_and(|fault| fault.message.contains("profile"))
