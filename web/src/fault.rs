@@ -91,22 +91,24 @@ pub(crate) fn of_page(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use asperity::io::ReadOptions;
+    use asperity::io::{ReadOptions, TextLayout};
 
     use super::*;
 
-    fn fault_of(text: &str) -> Option<Fault> {
-        ReadOptions::new().read_bytes(text, "a.txt").err().map(|error| Error::from(error).into())
+    fn fault_of(text: &str, options: ReadOptions) -> Option<Fault> {
+        options.read_bytes(text, "a.txt").err().map(|error| Error::from(error).into())
     }
 
     /// What the page has to ask for is told apart from what nobody can read.
     #[test]
     fn kinds_are_told_apart() {
-        let unit = fault_of("3 1 4 1\n5 9 2 6\n5 3 5 8\n");
+        let options = ReadOptions::new;
+        let text = "1 2 3\n4 5 6\n7 8 9\n";
+        let unit = fault_of(text, options().layout(TextLayout::Matrix));
         assert_eq!(unit.map(|fault| fault.kind), Some(Kind::HeightUnit));
-        let several = fault_of("1 2 3\n4 5 6\n7 8 9\n");
+        let several = fault_of(text, options());
         assert_eq!(several.map(|fault| fault.kind), Some(Kind::Layout));
-        let nothing = fault_of("no numbers at all");
+        let nothing = fault_of("no numbers at all", options());
         assert_eq!(nothing.map(|fault| fault.kind), Some(Kind::Other));
         let memory = Error::MemoryBudget { needed: 2, budget: 1, nodes_that_fit: 0 };
         assert_eq!(Fault::from(memory).kind, Kind::Memory);

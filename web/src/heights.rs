@@ -211,11 +211,13 @@ mod tests {
 
     const TEXT: &str = "3 1 4 1\n5 9 nan 6\n5 3 5 12\n";
 
-    /// The page asks for the unit, the side and the missing nodes, one after the other.
+    /// The page asks for the layout, the unit, the side and the missing nodes, one after the other.
     #[test]
     fn a_text_is_read_by_questions() -> Result<(), Fault> {
         let read = |reading: &Reading| Heights::read(TEXT.as_bytes(), "a.txt", reading);
         let mut reading = Reading::default();
+        assert_eq!(read(&reading).err().map(|fault| fault.kind), Some(Kind::Layout));
+        reading.layout = Some("matrix".to_string());
         assert_eq!(read(&reading).err().map(|fault| fault.kind), Some(Kind::HeightUnit));
         reading.height_unit = Some("µm".to_string());
         let sizeless = read(&reading)?;

@@ -78,7 +78,8 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_asked_for() -> Result<(), Fault> {
-        let mut reading = Reading { height_unit: Some("nm".to_string()), ..Reading::default() };
+        let [layout, height_unit] = ["matrix", "nm"].map(|text| Some(text.to_string()));
+        let mut reading = Reading { layout, height_unit, ..Reading::default() };
         let text = b"3 1 nan 1\n5 9 2 6\n5 3 5 8\n";
         let needs = |reading: &Reading| -> Result<Value, Fault> {
             Ok(of(&Heights::read(text, "a.txt", reading)?)["needs"].clone())
