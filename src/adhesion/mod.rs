@@ -68,6 +68,7 @@ mod target;
 mod trace;
 mod window;
 
+#[cfg(feature = "io")]
 pub(crate) use board::Change;
 pub use branch::AdhesiveBranch;
 pub use builder::AdhesiveBuilder;
