@@ -40,6 +40,11 @@ impl Column {
         Self { name, unit: String::new(), cells }
     }
 
+    /// Words.
+    pub(crate) fn words<'a>(name: &'static str, words: impl Iterator<Item = &'a str>) -> Self {
+        Self { name, unit: String::new(), cells: words.map(str::to_string).collect() }
+    }
+
     /// A fraction.
     pub(crate) fn percent(name: &'static str, values: impl Iterator<Item = f64>) -> Self {
         Self::scaled(name, ("%", 0.01), values)

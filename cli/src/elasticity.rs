@@ -84,14 +84,21 @@ impl Bodies {
     ///
     /// [`Error::ForeignKernel`] if it is of others.
     pub(crate) fn of_record(record: &LoadingRecord) -> Result<(Option<Periodic>, Self), Error> {
-        let elastic = record.bodies();
+        Self::of_kernel(&record.kernel().origin, record.bodies())
+    }
+
+    /// Those of a kernel, with Young's modulus \[Pa\] and Poisson's ratio of each elastic one that is known.
+    pub(crate) fn of_kernel(
+        origin: &KernelOrigin,
+        elastic: &[(f64, f64)],
+    ) -> Result<(Option<Periodic>, Self), Error> {
         let plain = |e_star: &f64| Self {
             elastic: elastic.iter().map(|&(e, nu)| [e, nu]).collect(),
             ..Self::of_modulus(*e_star, &of_record_in_words(elastic))
         };
         let layers = |body: &LayeredBody| Self::of_layers(body.clone());
         let (love, spectral) = (Some(Periodic::Love), Some(Periodic::Spectral));
-        match &record.kernel().origin {
+        match origin {
             KernelOrigin::Boussinesq { e_star } => Ok((None, plain(e_star))),
             KernelOrigin::PeriodicBoussinesq { e_star } => Ok((love, plain(e_star))),
             KernelOrigin::Spectral { e_star } => Ok((spectral, plain(e_star))),

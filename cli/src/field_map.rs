@@ -23,8 +23,9 @@ const FONT: i32 = 20;
 const MARGIN: Margin = Margin { left: 130, right: 200, top: 80, bottom: 100 };
 /// Values below the range.
 const BELOW: RGBColor = RGBColor(230, 0, 0);
-/// Nodes that have yielded.
+/// Nodes that have yielded, and those that are pulled.
 const YIELDED: RGBColor = RGBColor(240, 120, 0);
+const PULLED: RGBColor = RGBColor(196, 200, 206);
 
 struct Margin {
     left: i32,
@@ -50,7 +51,8 @@ pub struct FieldMap<'a> {
     pub grid: &'a Grid,
     /// Unit of the sides of the grid.
     pub length_unit: &'a str,
-    /// The values, NaN where nothing is to be drawn, and infinite where nodes have yielded.
+    /// The values, NaN where nothing is to be drawn, infinite where nodes have yielded, and −∞ where nodes are pulled
+    /// across a gap.
     pub values: &'a DMatrix<f64>,
     /// The least and the greatest value.
     pub range: (f64, f64),
@@ -213,12 +215,16 @@ impl FieldMap<'_> {
             let ends = [(0.0, level), (1.0, level)].into_iter();
             bar.curve(area, (&across, colours), ends, self.ink_on(colours.place(level)))?;
         }
+        let has = |mark: f64| self.values.iter().any(|value| *value == mark);
         let marks: [(&str, RGBColor, bool); 2] = [
             ("below 0", BELOW, self.values.iter().any(|value| self.is_below(*value))),
-            ("yielded", YIELDED, self.values.iter().any(|value| *value == f64::INFINITY)),
+            ("yielded", YIELDED, has(f64::INFINITY)),
         ];
-        for (text, colour, _) in marks.into_iter().filter(|(.., is_there)| *is_there) {
-            let at = (bar.left + bar.width, bar.top - FONT);
+        let top = bar.top - FONT;
+        let marks = marks.into_iter().map(|mark| (mark, top));
+        let below = (("pulled", PULLED, has(f64::NEG_INFINITY)), bar.top + bar.height + 2 * FONT);
+        for ((text, colour, _), y) in marks.chain([below]).filter(|((.., is_there), _)| *is_there) {
+            let at = (bar.left + bar.width, y);
             let pos = anchor(HPos::Right, VPos::Center);
             area.draw(&Rectangle::new(
                 [(at.0 + 8, at.1 - 8), (at.0 + 24, at.1 + 8)],
@@ -231,7 +237,8 @@ impl FieldMap<'_> {
 
     fn is_below(&self, value: f64) -> bool {
         let (least, greatest) = self.range;
-        self.scale == Scale::Linear && value < least - 1e-9 * (greatest - least).abs()
+        let is_number = value.is_finite();
+        self.scale == Scale::Linear && is_number && value < least - 1e-9 * (greatest - least).abs()
     }
 
     fn colour(&self, colours: &Axis, value: f64) -> RGBColor {
@@ -241,6 +248,9 @@ impl FieldMap<'_> {
         }
         if value == f64::INFINITY {
             return YIELDED;
+        }
+        if value == f64::NEG_INFINITY {
+            return PULLED;
         }
         match colours.place(value) {
             Some(share) if greatest > least => self.shade(share),

@@ -1,5 +1,6 @@
 //! The program `asperity`: contacts of rough surfaces on the command line.
 
+mod adhesion;
 mod advice;
 mod at;
 mod columns;
@@ -42,10 +43,11 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 /// Elastic contact of rough surfaces by the boundary element method: the whole loading path, event by event, or single
 /// loads.
 ///
-/// The model: a rigid rough surface is pressed into an elastic half-space, without friction and adhesion, and with
-/// slopes well below 1. Nothing yields, unless a hardness is given. Two elastic bodies are equivalent to one with the
-/// composite modulus E*. The discrete problem has one pressure for each cell of the grid. The program solves it to
-/// rounding, or prints the remaining error. Every command warns if the grid is too coarse for the surface.
+/// The model: a rigid rough surface is pressed into an elastic half-space, without friction, and with small slopes,
+/// well below 1. Nothing yields, unless a hardness is given, and nothing sticks, unless a work of adhesion is. Two
+/// elastic bodies are equivalent to one with the composite modulus E*. The discrete problem has one pressure for each
+/// cell of the grid. The program solves it to rounding, or prints the remaining error. Every command warns if the grid
+/// is too coarse for the surface.
 ///
 /// Without a command the program follows the path of a generated surface to 10 % contact, in seconds, as an example.
 /// For your own surface: `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path

@@ -18,7 +18,7 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
     ),
     (
         &["adhesi", "surface-energy", "cohesi", "jkr", "dmt"],
-        "nothing pulls here; the library follows surfaces that stick (`asperity::adhesion`)",
+        "nothing pulls here; `asperity path` takes --work-of-adhesion",
     ),
     (
         &["viscoel", "creep", "relax", "rate", "frequency"],
@@ -30,7 +30,7 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
     (
         &["unload"],
         "unloading needs no option where nothing yields: elastic contact without friction goes back through the same states; \
-         `asperity path --hardness` takes --unload",
+         `asperity path` takes --unload with --hardness and with --work-of-adhesion",
     ),
 ];
 

@@ -44,6 +44,11 @@ impl Settings {
         Ok(Self(settings))
     }
 
+    /// Whether they have an entry.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.0.get(name).is_some()
+    }
+
     /// `Ok` if the paths of two folders are of the same settings; if they are `members` of an ensemble, but for the
     /// seed or the measured map.
     pub(crate) fn check_same(

@@ -59,6 +59,18 @@ pub(crate) const TIME: Dimension = Dimension {
         ("years", 31_557_600.0),
     ],
 };
+/// A work of adhesion.
+pub(crate) const SURFACE_ENERGY: Dimension = Dimension {
+    name: "work of adhesion",
+    units: &[
+        ("J/m2", 1.0),
+        ("mJ/m2", 1e-3),
+        ("µJ/m2", 1e-6),
+        ("N/m", 1.0),
+        ("mN/m", 1e-3),
+        ("erg/cm2", 1e-3),
+    ],
+};
 /// A dynamic viscosity.
 pub(crate) const VISCOSITY: Dimension =
     Dimension { name: "viscosity", units: &[("Pas", 1.0), ("mPas", 1e-3), ("cP", 1e-3)] };

@@ -8,12 +8,14 @@
 //! |---|---|---|
 //! | [`paths()`] | a surface on a body; how its path is followed | a dense solution at both ends of every interval |
 //! | [`yielding()`] | the same with a hardness | the same, single loads, unloading, a record |
+//! | [`adhesion()`] | a surface that sticks to a half-space; a walk of approaches | dense displacements, all equilibria of few nodes, loops, energies |
 //! | [`large_contacts()`] | a surface on a half-space, on more nodes | without a factor: the path with one; with one: a dense solution |
 //! | [`fixed_loads()`] | a surface on a body; loads, approaches, areas, mean gaps | dense gaps, and the path |
 //! | [`large_loads()`] | the same on more nodes of a half-space | the same |
 //! | [`parsers()`] | files of heights, hostile ones most of all | what is read after it was written again |
 //! | [`records()`] | paths on disk, tampered with | the record before it was written, and dense fields |
 
+mod adhesion;
 mod compare;
 mod dense;
 mod draw;
@@ -36,6 +38,7 @@ mod verdict;
 mod walk;
 mod yielding;
 
+pub use adhesion::adhesion;
 pub use fixed_loads::{fixed_loads, large_loads};
 pub use large_contacts::large_contacts;
 pub use parsers::parsers;
@@ -50,7 +53,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub type Driver = fn(&[u8]) -> Verdict;
 
 /// All drivers by their names, which are those of the fuzz targets as well.
-pub const DRIVERS: [(&str, Driver); 7] = [
+pub const DRIVERS: [(&str, Driver); 8] = [
+    ("adhesion", adhesion),
     ("fixed_loads", fixed_loads),
     ("large_contacts", large_contacts),
     ("large_loads", large_loads),

@@ -65,6 +65,11 @@ fn replay(target: &str) -> Result<(), Violation> {
 }
 
 #[test]
+fn adhesion() -> Result<(), Violation> {
+    replay("adhesion")
+}
+
+#[test]
 fn fixed_loads() -> Result<(), Violation> {
     replay("fixed_loads")
 }

@@ -79,6 +79,11 @@ fn yielding_is_right() -> Result<(), Violation> {
 }
 
 #[test]
+fn adhesion_is_right() -> Result<(), Violation> {
+    compared(drive("adhesion_is_right", asperity_drivers::adhesion, 150, 400)?)
+}
+
+#[test]
 fn large_contacts_are_right() -> Result<(), Violation> {
     compared(drive("large_contacts_are_right", asperity_drivers::large_contacts, 40, 400)?)
 }

@@ -21,6 +21,8 @@ Where to find it
     the elastic body
 ``load_path``, ``open``
     the loading path, its states (``History``, ``State``) and fields, and its records
+``Adhesion``
+    surfaces that stick: both branches of the path (``AdhesivePath``, ``AdhesiveBranch``), pull-off
 ``report``
     a path as one page for a browser
 ``solve``, ``sweep``
@@ -57,6 +59,10 @@ Own solvers of the linear systems are written in Rust, by its trait ``LinearUpda
 from asperity import errors, results
 from asperity._asperity import (
     EVENTS,
+    Adhesion,
+    AdhesiveBranch,
+    AdhesivePath,
+    AdhesiveState,
     Creep,
     CreepSteps,
     HalfSpace,
@@ -116,6 +122,10 @@ from asperity._asperity import (
 from asperity.errors import AsperityError, AsperityWarning
 
 __all__ = [
+    "Adhesion",
+    "AdhesiveBranch",
+    "AdhesivePath",
+    "AdhesiveState",
     "AsperityError",
     "AsperityWarning",
     "Creep",

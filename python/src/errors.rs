@@ -5,8 +5,8 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use asperity::{
-    BedError, CreepError, Error, FileError, JointError, KernelError, SlipError, SurfaceError,
-    UpdaterError,
+    AdhesionError, BedError, CreepError, Error, FileError, JointError, KernelError, SlipError,
+    SurfaceError, UpdaterError,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -125,7 +125,7 @@ fn raise(
 
 /// Words of the library in those of this package.
 pub(crate) fn in_python(text: &str) -> String {
-    const WORDS: [(&str, &str); 12] = [
+    const WORDS: [(&str, &str); 13] = [
         ("`surface::fill_missing`", "`Surface.fill_missing()`"),
         ("`ReadOptions::height_unit`", "`height_unit=`"),
         ("`ReadOptions::lateral_unit`", "`lateral_unit=`"),
@@ -134,6 +134,7 @@ pub(crate) fn in_python(text: &str) -> String {
         ("`ReadOptions::layout`", "`layout=`"),
         ("`ReadOptions::rows_are_y`", "`rows_are_y=True`"),
         ("`Topography::level`", "`Surface.level(\"plane\")`"),
+        ("`AdhesiveRecord` reads it", "`asperity.open` reads it"),
         ("`kernel::check`", "`check_half_space`"),
         ("The model is elastic", "The model is elastic unless a `hardness=` is given"),
         ("it has to be given", "it has to be given, as `half_space=`"),
@@ -264,6 +265,7 @@ fn describe(error: &Error) -> Described {
         Error::NotHomogeneous { asked, reason } => {
             (VALUE, "NotHomogeneous", numbers![asked, reason])
         }
+        Error::Adhesion(error) => of_adhesion(error),
         Error::Surface(error) => of_surface(error),
         Error::File(error) => of_file(error),
         // Those that come to be later have their words.
@@ -380,6 +382,30 @@ fn of_joint(error: &JointError) -> Described {
             (VALUE, "NoFunction", numbers![step, quantity, value, interpolated, tolerance])
         }
         _ => (VALUE, "Joint", Vec::new()),
+    }
+}
+
+fn of_adhesion(error: &AdhesionError) -> Described {
+    match error {
+        AdhesionError::Unresolved { resolution, greatest, cell, cell_needed } => {
+            (VALUE, "AdhesionUnresolved", numbers![resolution, greatest, cell, cell_needed])
+        }
+        AdhesionError::NoRoomForSlope { stress, range, slope, cell, cell_needed } => {
+            (VALUE, "NoRoomForSlope", numbers![stress, range, slope, cell, cell_needed])
+        }
+        AdhesionError::GrowthUnknown => (VALUE, "GrowthUnknown", Vec::new()),
+        AdhesionError::Behind { quantity, value, present } => {
+            (VALUE, "Behind", numbers![quantity, value, present])
+        }
+        AdhesionError::NotOnLaw { ix, iy, approach, value } => {
+            (VALUE, "NotOnLaw", numbers![ix, iy, approach, value])
+        }
+        AdhesionError::WrongChanges { step } => (VALUE, "WrongChanges", numbers![step]),
+        AdhesionError::Record { path } => {
+            let filename = path;
+            ("FileError", "RecordWithAdhesion", numbers![filename])
+        }
+        _ => (VALUE, "Adhesion", Vec::new()),
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Nothing is computed here. Each file has one topic, with a function `register` that adds its classes and functions.
 
+mod adhesion;
 mod arrays;
 mod choice;
 mod compute;
@@ -41,6 +42,7 @@ fn _asperity(module: &Bound<'_, PyModule>) -> PyResult<()> {
     history::register(module)?;
     path::register(module)?;
     path::setup::register(module)?;
+    adhesion::register(module)?;
     report::register(module)?;
     fixed_load::register(module)?;
     patches::register(module)?;

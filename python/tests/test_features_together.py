@@ -59,7 +59,7 @@ def page() -> tuple[list[str], dict[str, list[str]]]:
 
 def test_the_page_has_these_rows() -> None:
     columns, rows = page()
-    assert list(rows) == list(ROWS)
+    assert list(rows) == [*ROWS, "adhesion"]
     for column in ("Python", "pickles"):
         assert {cells[columns.index(column)] for cells in rows.values()} == {"yes"}
 
@@ -155,6 +155,29 @@ def answers(of: asp.LoadingPath | asp.History) -> list[object]:
         except errors.AsperityError as refused:
             found.append((type(refused), str(refused)))
     return found
+
+
+def test_adhesion(program: Callable[..., str], tmp_path: Path) -> None:
+    """The row of another type of path: Python, pickles, and what it cannot be given."""
+    columns, rows = page()
+    cells = dict(zip(columns, rows["adhesion"], strict=True))
+    z, record = asp.example_surface(nodes=NODES), tmp_path / "path.npz"
+    np.save(tmp_path / "z.npy", z.z.T)
+    given = ["--surface", tmp_path / "z.npy", "--side", SIZE[0], "--material", "steel", "--work-of-adhesion", 1000]
+    program("path", *given, "--max-area-fraction", 0.3, "--unload", "--record", record, "--out", tmp_path / "out")
+    path = asp.load_path(z, half_space(), adhesion=asp.Adhesion(1000.0), area_fraction=0.3, check=False)
+    path.run()
+    path.unload()
+    np.testing.assert_array_equal(path.states.load, np.load(record)["load"])
+    assert asp.open(record).states == path.states == pickle.loads(pickle.dumps(path.states))
+    for name, ask in {
+        "patches": lambda: asp.patches(path),  # type: ignore[call-overload]
+        "slip": lambda: asp.shear(path, friction=0.3, compliance_ratio=1.2),  # type: ignore[arg-type]
+        "conductance": lambda: asp.conductance(path, 0.04, e_star=1e11),  # type: ignore[arg-type]
+    }.items():
+        assert cells[name] == "e"
+        with pytest.raises((TypeError, errors.AsperityError)):
+            ask()
 
 
 @pytest.mark.parametrize("row", ROWS)

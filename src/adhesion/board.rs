@@ -18,6 +18,9 @@ const TIE: f64 = 1e-13;
 /// By how much a gap may be beside a corner of the law, relative to the range.
 const CORNER: f64 = 1e-11;
 
+/// How far a pull may be from its law where a node that is carried is put on that, relative to the stress.
+pub(super) const LAG: f64 = 1e-10;
+
 /// A watched node.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
@@ -29,10 +32,10 @@ pub(super) struct Row {
 
 /// Something that happens to a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Change {
-    pub(super) node: usize,
-    pub(super) from: NodeState,
-    pub(super) to: NodeState,
+pub(crate) struct Change {
+    pub(crate) node: usize,
+    pub(crate) from: NodeState,
+    pub(crate) to: NodeState,
 }
 
 /// Pressures and gaps of watched nodes along a parameter, with the matrix of how each answers to the others.
@@ -396,7 +399,7 @@ impl Board {
         };
         let lag = self.sign * (law.pull(gap) - pull);
         let gain = if on_slope { -self.softness(place) } else { 1.0 };
-        if lag <= 1e-10 * law.stress() && gain > 0.0 {
+        if lag <= LAG * law.stress() && gain > 0.0 {
             self.held.remove(0);
             self.carried = None;
             if on_slope {

@@ -5,8 +5,28 @@ use super::state::{AdhesiveEvent, AdhesiveState};
 /// The states of one branch, or of several that follow each other: what an [`AdhesivePath`](super::AdhesivePath) is
 /// collected into.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "Vec<AdhesiveState>", into = "Vec<AdhesiveState>")
+)]
 pub struct AdhesiveBranch {
     states: Vec<AdhesiveState>,
+}
+
+#[cfg(feature = "serde")]
+impl From<Vec<AdhesiveState>> for AdhesiveBranch {
+    fn from(mut states: Vec<AdhesiveState>) -> Self {
+        states.iter_mut().for_each(|state| state.contact.restore_infinity());
+        Self { states }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<AdhesiveBranch> for Vec<AdhesiveState> {
+    fn from(branch: AdhesiveBranch) -> Self {
+        branch.states
+    }
 }
 
 impl FromIterator<AdhesiveState> for AdhesiveBranch {

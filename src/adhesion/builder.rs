@@ -5,13 +5,14 @@ use std::sync::Arc;
 use super::front::Body;
 use super::law::Adhesion;
 use super::path::AdhesivePath;
+use super::plain::Plain;
 use super::state::Direction;
 use super::target::Targets;
 use crate::contact::{ContactState, ContactTarget};
 use crate::convolution::Convolution;
 use crate::error::AdhesionError;
 use crate::memory;
-use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface};
+use crate::{ContactGrowth, Error, InfluenceKernel, LoadingSolver, Problem, Surface};
 
 /// Fields of the grid that a path holds.
 const FIELDS: usize = 24;
@@ -71,6 +72,13 @@ impl AdhesiveBuilder<'_> {
         self
     }
 
+    /// The path without adhesion.
+    fn plain(&self, targets: &Targets, budget: usize) -> Result<Plain, Error> {
+        let builder = LoadingSolver::builder(self.surface, self.kernel).memory_budget(budget);
+        let builder = targets.all().iter().fold(builder, |builder, &target| builder.until(target));
+        Ok(Plain::new(builder.build()?.into_path()))
+    }
+
     /// Samples the surface, tabulates the kernel, and prepares the path before its first state.
     ///
     /// # Errors
@@ -99,6 +107,8 @@ impl AdhesiveBuilder<'_> {
         let (range, mean_gap) = (law.range(), problem.mean_gap());
         let apart = ContactState::new(&problem.grid(), 0, -range, 0.0, mean_gap + range);
         targets.check_ahead(&apart, Direction::Loading)?;
-        Ok(AdhesivePath::new(Body::new(Arc::new(problem), law, left), targets, self.window_size))
+        let plain = (law.work() == 0.0).then(|| self.plain(&targets, budget)).transpose()?;
+        let body = Body::new(Arc::new(problem), law, left);
+        Ok(AdhesivePath::new((body, self.law), targets, (self.window_size, plain)))
     }
 }

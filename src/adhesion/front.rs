@@ -77,7 +77,23 @@ pub(super) struct Body {
     contact: ContactSequence,
     /// The soft nodes, those that have been so longest first: the factor knows their columns again.
     soft: Vec<usize>,
+    /// Nodes out of contact whose columns the factor has, in its order.
+    known: Vec<usize>,
+    /// Of the window that has been played last, until nodes have left the contact.
+    window: Option<Window>,
+    /// The matrix S_SS of the soft nodes, if it is known.
+    soft_matrix: Option<Mat<f64>>,
+    /// The least pivot of M over 1/k: gaps of soft nodes are known so many times less exactly than others.
+    least_pivot: f64,
     convolution: Convolution,
+}
+
+/// What a window has watched, and the matrix of that.
+#[derive(Debug)]
+struct Window {
+    /// Out of contact, in the order of its rows.
+    nodes: Vec<usize>,
+    schur: Schur,
 }
 
 /// What a solution leaves in gaps that are known, relative to the range and the greatest length.
@@ -90,6 +106,10 @@ impl Body {
             convolution: problem.convolution(),
             updater: RecursiveCholesky::new(),
             soft: Vec::new(),
+            known: Vec::new(),
+            window: None,
+            soft_matrix: None,
+            least_pivot: 1.0,
             problem,
             law,
             budget,
@@ -106,6 +126,22 @@ impl Body {
         &self.soft
     }
 
+    /// The least pivot of M over 1/k, 1 at most: rounding of gaps is greater by its inverse.
+    pub(super) fn least_pivot(&self) -> f64 {
+        self.least_pivot
+    }
+
+    /// Nodes out of contact whose columns the factor has: those that are watched first, in this order, cost no
+    /// substitution.
+    pub(super) fn known(&self) -> &[usize] {
+        &self.known
+    }
+
+    /// Keeps the matrix of what a window watches, from which that of the next one follows.
+    pub(super) fn keep(&mut self, nodes: Vec<usize>, schur: Schur) {
+        self.window = Some(Window { nodes, schur });
+    }
+
     /// Lets factor and soft nodes follow: nodes that left the contact leave the factor, others join it.
     pub(super) fn follow(&mut self, front: &Front) -> Result<(), Error> {
         let is = |node: usize, state| front.nodes[node] == state;
@@ -117,17 +153,67 @@ impl Body {
                 self.contact.remove(left.node)?;
             }
             self.updater.release(&self.problem, &self.contact, &left)?;
+            // It forgets all columns.
+            self.known.clear();
         }
+        self.soft_matrix = None;
+        let window = self.window.take().filter(|_| left.is_empty());
         let nodes = 0..front.nodes.len();
         let joined: Vec<usize> = nodes
             .clone()
             .filter(|&node| is(node, NodeState::Contact) && !self.contact.contains(node))
             .collect();
-        join_all(&mut self.updater, &self.problem, &mut self.contact, &joined, self.budget)?;
+        let window = match window {
+            Some(mut window) if joined.iter().all(|node| window.nodes.contains(node)) => {
+                self.join(&mut window, &joined)?;
+                Some(window)
+            }
+            _ if joined.is_empty() => None,
+            _ => {
+                let contact = &mut self.contact;
+                join_all(&mut self.updater, &self.problem, contact, &joined, self.budget)?;
+                self.known.clear();
+                None
+            }
+        };
         self.soft.retain(|&node| is(node, NodeState::Soft));
-        let mut known = vec![false; front.nodes.len()];
-        self.soft.iter().for_each(|&node| known[node] = true);
-        self.soft.extend(nodes.filter(|&node| is(node, NodeState::Soft) && !known[node]));
+        let mut is_there = vec![false; front.nodes.len()];
+        self.soft.iter().for_each(|&node| is_there[node] = true);
+        // Those whose columns are known first, in their order.
+        for node in self.known.iter().copied().chain(nodes) {
+            if is(node, NodeState::Soft) && !is_there[node] {
+                is_there[node] = true;
+                self.soft.push(node);
+            }
+        }
+        self.soft_matrix = window.and_then(|window| window.matrix_of(&self.soft));
+        Ok(())
+    }
+
+    /// Lets watched nodes join, with the columns that the factor has of them, and reduces the matrix of the others.
+    fn join(&mut self, window: &mut Window, joined: &[usize]) -> Result<(), Error> {
+        if joined.is_empty() {
+            return Ok(());
+        }
+        let watched = window.schur.size();
+        let needed = self.updater.bytes(self.contact.len() + joined.len(), watched);
+        let needed = needed.saturating_add(WindowFactor::bytes(watched));
+        if needed > self.budget {
+            let (budget, nodes_that_fit) = (self.budget, self.contact.len());
+            return Err(Error::MemoryBudget { needed, budget, nodes_that_fit });
+        }
+        let mut touched = WindowFactor::default();
+        touched.reset(watched, joined.len());
+        for node in joined {
+            let place = window.nodes.iter().position(|other| other == node);
+            let place = place.ok_or(Error::FactorizationFailed { nodes: watched })?;
+            let pushed = touched.push(&mut window.schur, place, 1.0);
+            pushed.map_err(|_| Error::FactorizationFailed { nodes: joined.len() })?;
+        }
+        touched.finish(&mut window.schur);
+        joined.iter().try_for_each(|&node| self.contact.push(node))?;
+        self.updater.join(&self.problem, &self.contact, &touched)?;
+        self.known.retain(|node| !joined.contains(node));
         Ok(())
     }
 
@@ -197,6 +283,7 @@ impl Body {
         if pressure.iter().flatten().any(|p| *p != 0.0) {
             self.add_displacement(&mut base, [&pressure[0], &pressure[1]])?;
         }
+        self.least_pivot = 1.0;
         if !self.soft.is_empty() {
             let [value, rate] = self.soft_pressures(&base)?;
             for (&node, (value, rate)) in self.soft.iter().zip(value.into_iter().zip(rate)) {
@@ -255,19 +342,29 @@ impl Body {
                 }
             }
         }
-        let mut schur = Schur::default();
-        self.updater.watch(&self.problem, &self.contact, &self.soft, &mut schur)?;
+        let matrix = match self.soft_matrix.take() {
+            Some(matrix) => matrix,
+            None => {
+                let mut schur = Schur::default();
+                self.updater.watch(&self.problem, &self.contact, &self.soft, &mut schur)?;
+                self.known.clone_from(&self.soft);
+                Mat::from_fn(schur.size(), schur.size(), |i, j| schur.entry(i, j))
+            }
+        };
         // M, of which the factor takes the lower triangle.
         let compliance = self.law.slope().recip();
-        let minus = Mat::from_fn(schur.size(), schur.size(), |i, j| {
-            if i == j { compliance - schur.entry(i, j) } else { -schur.entry(i, j) }
+        let size = matrix.nrows();
+        let minus = Mat::from_fn(size, size, |i, j| {
+            if i == j { compliance - matrix[(i, j)] } else { -matrix[(i, j)] }
         });
+        self.soft_matrix = Some(matrix);
         let nodes = self.contact.len() + self.soft.len();
         let factor = minus.llt(Side::Lower);
         let factor = factor.map_err(|_| Error::FactorizationFailed { nodes })?;
+        let pivots = (0..size).map(|i| factor.L()[(i, i)].powi(2) / compliance);
+        self.least_pivot = pivots.fold(1.0, f64::min);
         let range = self.law.range();
-        let mut right =
-            Mat::from_fn(schur.size(), 2, |i, k| gaps[k][i] - if k == 0 { range } else { 0.0 });
+        let mut right = Mat::from_fn(size, 2, |i, k| gaps[k][i] - if k == 0 { range } else { 0.0 });
         factor.solve_in_place(&mut right);
         Ok([0, 1].map(|k| right.col(k).iter().copied().collect()))
     }
@@ -302,6 +399,19 @@ impl Body {
             let budget = self.budget;
             return Err(Error::MemoryBudget { needed, budget, nodes_that_fit: self.contact.len() });
         }
-        self.updater.watch_both(&self.problem, &self.contact, nodes, positions, schur)
+        self.updater.watch_both(&self.problem, &self.contact, nodes, positions, schur)?;
+        self.known.clear();
+        self.known.extend_from_slice(nodes);
+        Ok(())
+    }
+}
+
+impl Window {
+    /// The part of the matrix that is of some nodes, if all of them were watched.
+    fn matrix_of(&self, nodes: &[usize]) -> Option<Mat<f64>> {
+        let place = |node: &usize| self.nodes.iter().position(|other| other == node);
+        let places: Vec<usize> = nodes.iter().map(place).collect::<Option<_>>()?;
+        let size = places.len();
+        Some(Mat::from_fn(size, size, |i, j| self.schur.entry(places[i], places[j])))
     }
 }

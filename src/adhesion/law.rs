@@ -8,8 +8,8 @@ use crate::{Error, InfluenceKernel};
 /// Maugis' law.
 const TRIANGLE: f64 = 0.45;
 const BORDER: f64 = 0.5;
-/// Beyond the first the branches contain loops that the mesh makes, which is said; beyond the second the law is
-/// refused.
+/// Beyond the first the branches contain loops that the mesh makes, of which there is a warning; beyond the second the
+/// law is refused.
 const WARNED: f64 = 0.5;
 const GREATEST: f64 = 0.8;
 
@@ -39,6 +39,7 @@ const GREATEST: f64 = 0.8;
 /// # }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Adhesion {
     work: f64,
     stress: Option<f64>,
@@ -46,7 +47,7 @@ pub struct Adhesion {
 }
 
 impl Adhesion {
-    /// A triangle, h₁ = 0, of this work of adhesion w \[J/m²\]. Unless a [`range`](Self::range) is given it is as short
+    /// No adhesion at w = 0: the states of the path without it. Otherwise a triangle, h₁ = 0, of this work of adhesion w \[J/m²\]. Unless a [`range`](Self::range) is given it is as short
     /// as the cells of the path resolve, k C(0,0) = 0.45: the limit of JKR as far as this mesh goes.
     #[must_use]
     pub fn work(work: f64) -> Self {
@@ -66,6 +67,12 @@ impl Adhesion {
         Self { range: Some(range), ..self }
     }
 
+    /// What was given: work of adhesion, cohesive stress and range.
+    #[must_use]
+    pub fn given(&self) -> (f64, Option<f64>, Option<f64>) {
+        (self.work, self.stress, self.range)
+    }
+
     /// The law on the cells of a kernel.
     ///
     /// # Errors
@@ -78,8 +85,11 @@ impl Adhesion {
 
     /// The same with coefficients that are tabulated.
     pub(super) fn of(&self, table: &KernelTable) -> Result<CohesiveLaw, Error> {
-        let work = Error::require_positive("work of adhesion", self.work)?;
         let compliance = table.self_influence() - table.gauge().unwrap_or_default();
+        if self.work == 0.0 {
+            return Ok(CohesiveLaw { stress: 0.0, flat: 0.0, range: 0.0, compliance });
+        }
+        let work = Error::require_positive("work of adhesion", self.work)?;
         let cell = table.grid().dx().max(table.grid().dy());
         let range = self
             .range
@@ -128,13 +138,6 @@ impl Adhesion {
             }
             .into());
         }
-        if resolution > WARNED * (1.0 + 1e-12) {
-            log::warn!(
-                "the slope of the cohesive law times the compliance of a cell is {resolution:.2}, above {WARNED}: the \
-                 loop of loading and unloading contains a part that the mesh makes; finer cells, or a longer range, \
-                 have none"
-            );
-        }
         Ok(law)
     }
 }
@@ -175,16 +178,30 @@ impl CohesiveLaw {
         self.range
     }
 
-    /// The slope k = σ₀/(h₂ − h₁) \[Pa/m\].
+    /// The slope k = σ₀/(h₂ − h₁) \[Pa/m\]; 0 without adhesion.
     #[must_use]
     pub fn slope(&self) -> f64 {
-        self.stress / (self.range - self.flat)
+        if self.stress == 0.0 { 0.0 } else { self.stress / (self.range - self.flat) }
     }
 
     /// k C(0,0): up to 0.5 the mesh adds no loop of its own; a law beyond 0.8 is refused.
     #[must_use]
     pub fn resolution(&self) -> f64 {
         self.slope() * self.compliance
+    }
+
+    /// Slope times compliance beyond which the mesh makes loops, over that of this law: cells that are so many times as
+    /// long make none. Below 1 there is a [warning](crate::Warning::SteepLaw).
+    #[must_use]
+    pub fn cell_margin(&self) -> f64 {
+        WARNED / self.resolution()
+    }
+
+    /// The contact radius `(9π w R² / 8E*)^⅓` that a sphere of a radius R \[m\] has at pull-off in the limit of JKR.
+    #[must_use]
+    pub fn pull_off_radius(&self, radius: f64, e_star: f64) -> f64 {
+        let work = 9.0 * std::f64::consts::PI * self.work();
+        (work * radius * radius / (8.0 * e_star)).cbrt()
     }
 
     /// Tabor's number `μ = σ₀ (9R / (2π w E*²))^⅓ / 1.157` of a sphere of a radius R \[m\] and the modulus E* \[Pa\],

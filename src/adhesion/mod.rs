@@ -40,7 +40,8 @@
 //! # What the mesh has to resolve
 //!
 //! The slope of the law times the compliance of a cell, [`CohesiveLaw::resolution`], has to be 0.5 at most: then a
-//! front crosses the cells without a loop that the mesh makes. Up to 0.8 a path is followed with a warning.
+//! front crosses the cells without a loop that the mesh makes. Up to 0.8 a path is followed, with a
+//! [warning](crate::Warning::of_adhesion).
 //! [`Adhesion::work`] without a range takes the shortest range that the cells resolve, `dx ≈ 0.2 E* h₂²/w`, which comes
 //! to the limit of JKR as the cells get finer: with 10 cells in the contact radius of a summit at pull-off the force is
 //! 4 % too great, with 20 cells 2.5 %, with 40 cells 1.5 %.
@@ -61,10 +62,14 @@ mod front;
 mod law;
 mod moment;
 mod path;
+mod plain;
 mod state;
 mod target;
+mod trace;
 mod window;
 
+#[cfg(feature = "io")]
+pub(crate) use board::Change;
 pub use branch::AdhesiveBranch;
 pub use builder::AdhesiveBuilder;
 pub use law::{Adhesion, CohesiveLaw};
@@ -72,3 +77,4 @@ pub use law::{Adhesion, CohesiveLaw};
 pub use path::AdhesiveTimings;
 pub use path::{AdhesiveEnd, AdhesiveFields, AdhesivePath};
 pub use state::{AdhesiveEvent, AdhesiveState, Direction, NodeState};
+pub(crate) use trace::Trace;

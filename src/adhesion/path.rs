@@ -9,10 +9,12 @@ use nalgebra::DMatrix;
 use super::board::Change;
 use super::branch::AdhesiveBranch;
 use super::front::{Body, Field, Front};
-use super::law::CohesiveLaw;
+use super::law::{Adhesion, CohesiveLaw};
 use super::moment::{Moment, Totals};
+use super::plain::Plain;
 use super::state::{AdhesiveEvent, AdhesiveState, Direction, NodeState};
 use super::target::Targets;
+use super::trace::Trace;
 use super::window::{self, Played};
 use crate::contact::{ContactState, ContactTarget};
 use crate::kernel::Gauge;
@@ -22,6 +24,9 @@ use crate::{Error, Grid, Problem};
 /// up to 628 soft ones twice as many are as fast, and half as many take 1.2 times as long.
 const WATCHED: usize = 64;
 const SOFT_FOR_ONE: usize = 4;
+/// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to 1e-12
+/// whatever the windows were, and another processor rounds otherwise.
+const SAME_LOAD: f64 = 1e-9;
 
 /// Why a branch has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -43,21 +48,22 @@ pub enum AdhesiveEnd {
 #[derive(Debug)]
 pub struct AdhesivePath {
     pub(super) body: Body,
+    adhesion: Adhesion,
     pub(super) front: Front,
     /// Of the front, if it is known.
     field: Option<Field>,
     pub(super) direction: Direction,
     pub(super) targets: Targets,
     window_size: Option<usize>,
+    /// Without adhesion.
+    plain: Option<Plain>,
     totals: Totals,
     /// Within a jump the node that was unstable.
     jump: Option<usize>,
     queue: VecDeque<AdhesiveState>,
     last: Option<AdhesiveState>,
     end: Option<AdhesiveEnd>,
-    /// All that has happened to nodes, and for each state how much had and its approach in the gauge of the kernel.
-    log: Vec<Change>,
-    marks: Vec<(usize, f64)>,
+    trace: Trace,
     timings: AdhesiveTimings,
 }
 
@@ -87,24 +93,29 @@ pub struct AdhesiveFields {
 }
 
 impl AdhesivePath {
-    pub(super) fn new(body: Body, targets: Targets, window_size: Option<usize>) -> Self {
+    pub(super) fn new(
+        (body, adhesion): (Body, Adhesion),
+        targets: Targets,
+        (window_size, plain): (Option<usize>, Option<Plain>),
+    ) -> Self {
         let nodes = vec![NodeState::Open; body.problem.initial_gap().len()];
         // Out of range but for rounding: the highest node comes into it first.
         let approach = -body.law.range();
         Self {
             front: Front { nodes, approach, held: Vec::new() },
             body,
+            adhesion,
             field: None,
             direction: Direction::Loading,
             targets,
             window_size,
+            plain,
             totals: Totals::default(),
             jump: None,
             queue: VecDeque::new(),
             last: None,
             end: None,
-            log: Vec::new(),
-            marks: Vec::new(),
+            trace: Trace::default(),
             timings: AdhesiveTimings::default(),
         }
     }
@@ -136,7 +147,16 @@ impl AdhesivePath {
     ///
     /// As for [`Self::unload_to`].
     pub fn load_to(&mut self, target: ContactTarget) -> Result<(), Error> {
-        let targets = Targets::of(&[target], &self.grid())?;
+        self.load_to_first_of(&[target])
+    }
+
+    /// The same to the first of several targets that is reached; without any to full contact.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::unload_to`].
+    pub fn load_to_first_of(&mut self, targets: &[ContactTarget]) -> Result<(), Error> {
+        let targets = Targets::of(targets, &self.grid())?;
         self.turn(Direction::Loading, targets)
     }
 
@@ -158,6 +178,9 @@ impl AdhesivePath {
             targets.check_ahead(&state.contact, direction)?;
         }
         self.go_back()?;
+        if let Some(plain) = &mut self.plain {
+            plain.turn(direction, targets.all());
+        }
         self.direction = direction;
         self.targets = targets;
         self.field = None;
@@ -174,21 +197,73 @@ impl AdhesivePath {
         self.jump = None;
         let step = self.last.map_or(0, |state| state.step);
         self.front = self.front_at(step);
-        self.marks.truncate(step);
-        self.log.truncate(self.marks.last().map_or(0, |mark| mark.0));
-        self.totals = self.last.map_or(Totals::default(), |state| Totals {
+        self.trace.truncate(step);
+        self.totals = self.last.map_or(Totals::default(), |state| self.totals_at(&state));
+        self.body.follow(&self.front)
+    }
+
+    fn totals_at(&self, state: &AdhesiveState) -> Totals {
+        Totals {
             work: self.gauge().work(state.work, state.contact.load),
             dissipated: state.dissipated,
-        });
-        self.body.follow(&self.front)
+        }
+    }
+
+    /// What has happened up to the present state.
+    pub(crate) fn trace(&self) -> Trace {
+        let mut trace = self.trace.clone();
+        trace.truncate(self.last.map_or(0, |state| state.step));
+        trace
+    }
+
+    /// Puts a path that has not begun behind the last state of another one of the same problem, where it has ended: it
+    /// can turn around or go on.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Trace::follow`] and of the updater, and [`Error::Inconsistent`] if the nodes do not carry the load of
+    /// the state.
+    pub(crate) fn restore(&mut self, trace: Trace, last: AdhesiveState) -> Result<(), Error> {
+        let mut most = 0;
+        let nodes = trace.follow(self.grid().nodes(), |_, [.., in_contact]| {
+            most = most.max(in_contact);
+            Ok(())
+        })?;
+        if let Some(plain) = &mut self.plain {
+            plain.skip_to(last.contact.contact_nodes, most)?;
+        }
+        let approach = trace.marks.last().map_or(-self.body.law.range(), |mark| mark.1);
+        self.front = Front { nodes, approach, held: Vec::new() };
+        self.body.follow(&self.front)?;
+        let field = self.body.survey(&self.front, last.direction.sign())?;
+        let [[pressures, _], _] = field.sums();
+        // Of all pressures, whose signs differ, and of the law: rounding of a solution.
+        let size: f64 = field.pressure[0].iter().map(|p| p.abs()).sum();
+        let [found, unit] = [pressures, size].map(|sum| sum * self.grid().cell_area());
+        let error = (found - last.contact.load).abs();
+        if error.is_nan() || error > SAME_LOAD * unit {
+            return Err(Error::Inconsistent {
+                step: last.step,
+                quantity: "load",
+                value: last.contact.load,
+                expected: found,
+                reason: "is what its nodes carry",
+            });
+        }
+        self.totals = self.totals_at(&last);
+        self.direction = last.direction;
+        self.trace = trace;
+        self.last = Some(last);
+        self.end = Some(AdhesiveEnd::Target);
+        Ok(())
     }
 
     /// Where the path was after so many states.
     fn front_at(&self, step: usize) -> Front {
         let start = (0, -self.body.law.range());
-        let (changes, approach) = step.checked_sub(1).map_or(start, |last| self.marks[last]);
+        let (changes, approach) = step.checked_sub(1).map_or(start, |last| self.trace.marks[last]);
         let mut nodes = self.front.nodes.clone();
-        for change in self.log[changes..].iter().rev() {
+        for change in self.trace.changes[changes..].iter().rev() {
             nodes[change.node] = change.from;
         }
         Front { nodes, approach, held: Vec::new() }
@@ -229,6 +304,12 @@ impl AdhesivePath {
     #[must_use]
     pub fn law(&self) -> CohesiveLaw {
         self.body.law
+    }
+
+    /// The adhesion that was asked for.
+    #[must_use]
+    pub fn adhesion(&self) -> Adhesion {
+        self.adhesion
     }
 
     /// The grid.
@@ -286,9 +367,9 @@ impl AdhesivePath {
             ..ContactState::new(&self.grid(), moment.contact_nodes, approach, load, gaps / nodes)
         };
         let [soft_nodes, cohesive_nodes] = moment.pulled;
-        self.marks.push((changes, moment.approach));
+        self.trace.marks.push((changes, moment.approach));
         let mut state = AdhesiveState {
-            step: self.marks.len(),
+            step: self.trace.marks.len(),
             direction: self.direction,
             event,
             node: self.grid().coordinates(node),
@@ -305,7 +386,49 @@ impl AdhesivePath {
         self.queue.push_back(state);
     }
 
+    /// The next state without adhesion.
+    fn advance_plain(&mut self) -> Result<Option<AdhesiveState>, Error> {
+        let Some(plain) = &mut self.plain else { return Ok(None) };
+        let next = plain.next()?;
+        let is_at_target = plain.is_at_target();
+        let Some((event, node, contact)) = next else {
+            let ends = [AdhesiveEnd::NoMoreEvents, AdhesiveEnd::Target];
+            self.end = Some(ends[usize::from(is_at_target)]);
+            return Ok(None);
+        };
+        let grid = self.grid();
+        let (from, to) = match event {
+            AdhesiveEvent::Touch => (NodeState::Open, NodeState::Contact),
+            _ => (NodeState::Contact, NodeState::Open),
+        };
+        if event != AdhesiveEvent::Limit {
+            let node = grid.index(node.0, node.1);
+            self.trace.changes.push(Change { node, from, to });
+            self.front.nodes[node] = to;
+        }
+        self.front.approach = contact.approach + self.gauge().0.displacement(contact.load);
+        self.trace.marks.push((self.trace.changes.len(), self.front.approach));
+        let state = AdhesiveState {
+            step: self.trace.marks.len(),
+            direction: self.direction,
+            event,
+            node,
+            contact,
+            soft_nodes: 0,
+            cohesive_nodes: 0,
+            adhesive_energy: 0.0,
+            dissipated: 0.0,
+            work: contact.energy,
+        };
+        self.last = Some(state);
+        self.end = is_at_target.then_some(AdhesiveEnd::Target);
+        Ok(self.last)
+    }
+
     fn advance(&mut self) -> Result<Option<AdhesiveState>, Error> {
+        if self.end.is_none() && self.plain.is_some() {
+            return self.advance_plain();
+        }
         while self.queue.is_empty() {
             if self.end.is_some() {
                 return Ok(None);
@@ -334,7 +457,7 @@ impl AdhesivePath {
             && let Some(node) = self.jump.take()
         {
             let moment = Moment::of(&self.body.law, &self.front, &field, self.totals);
-            self.push(AdhesiveEvent::JumpEnd, node, &moment, self.log.len());
+            self.push(AdhesiveEvent::JumpEnd, node, &moment, self.trace.changes.len());
             self.field = Some(field);
             return Ok(());
         }
@@ -343,7 +466,7 @@ impl AdhesivePath {
             targets: &self.targets,
             gauge: self.body.problem.table().gauge_per_load(),
             totals: self.totals,
-            last_node: self.log.last().map_or(0, |change| change.node),
+            last_node: self.trace.changes.last().map_or(0, |change| change.node),
         };
         // What a window costs grows with the soft nodes.
         let automatic = WATCHED.max(self.body.soft().len() / SOFT_FOR_ONE);
@@ -358,8 +481,8 @@ impl AdhesivePath {
         self.timings.windows += 1;
         self.timings.taken_back += taken_back;
         self.timings.events += changes.len();
-        let before = self.log.len();
-        self.log.extend(changes);
+        let before = self.trace.changes.len();
+        self.trace.changes.extend(changes);
         for (event, node, moment, changes) in &moments {
             self.push(*event, *node, moment, before + changes);
         }

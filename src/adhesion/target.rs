@@ -61,6 +61,11 @@ impl Targets {
         Ok(Self { targets: own, nodes })
     }
 
+    /// All of them; a mean pressure is a load.
+    pub(super) fn all(&self) -> &[ContactTarget] {
+        &self.targets
+    }
+
     /// `Ok` if all lie ahead of a state.
     pub(super) fn check_ahead(
         &self,

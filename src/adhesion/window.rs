@@ -1,6 +1,6 @@
 //! The events of a window: along one parameter, among the nodes that are watched.
 
-use super::board::{Beginning, Board, Change, Left, Row};
+use super::board::{Beginning, Board, Change, LAG, Left, Row};
 use super::front::{Body, Field, Front, Parameter};
 use super::moment::{Moment, Totals};
 use super::state::{AdhesiveEvent, Direction, NodeState};
@@ -10,9 +10,10 @@ use crate::error::AdhesionError;
 use crate::kernel::Gauge;
 use crate::updater::Schur;
 
-/// By how much a node may be beyond its law at the end of a window: in gaps relative to the range and to the greatest
-/// length, and in pressures relative to the stress.
-const SLACK: f64 = 1e-10;
+/// By how much a node may be beyond its law at the end of a window, in pressures relative to the stress, in gaps to the
+/// range: ten times the lag with which a node that is carried is put on its law, which others answer to. Of gaps there is
+/// rounding of the greatest length besides, which soft nodes near an instability amplify.
+const SLACK: f64 = 10.0 * LAG;
 const ROUNDING: f64 = 1e-12;
 /// A window that its end contradicts is tried again so often, with fewer events and more nodes.
 const TRIES: usize = 60;
@@ -106,7 +107,7 @@ pub(super) fn follow(
 fn beyond(body: &Body, front: &Front, field: &Field) -> Vec<(usize, f64)> {
     let law = &body.law;
     let length = body.problem.greatest_gap() + front.approach.abs();
-    let slack = SLACK + ROUNDING * length / law.range();
+    let slack = SLACK + ROUNDING * length / (law.range() * body.least_pivot());
     let nodes = front.nodes.iter().enumerate().filter_map(|(node, state)| {
         let gap = field.gap[0][node] / law.range();
         let flat = law.flat_range() / law.range();
@@ -179,7 +180,12 @@ impl<'a> Play<'a> {
             .iter()
             .map(|&(_, node)| node)
             .partition(|&node| front.nodes[node] == NodeState::Contact);
+        // Those whose columns are known first, in their order.
+        let mut place = vec![usize::MAX; front.nodes.len()];
+        body.known().iter().enumerate().for_each(|(k, &node)| place[node] = k);
+        let soft = watched.partition_point(|&node| front.nodes[node] == NodeState::Soft);
         watched.extend(outside);
+        watched[soft..].sort_by_key(|&node| place[node]);
         let places = body.contact().places();
         let mut positions: Vec<usize> = inside.iter().filter_map(|&node| places[node]).collect();
         positions.sort_unstable();
@@ -214,6 +220,7 @@ impl<'a> Play<'a> {
             is_carried: parameter != Parameter::Approach,
             contact_nodes: front.count(NodeState::Contact),
         });
+        body.keep(watched, schur);
         let grid = body.problem.grid();
         Ok(Some(Self {
             view,

@@ -80,4 +80,21 @@ pub enum AdhesionError {
         /// By how much, relative to the range.
         value: f64,
     },
+
+    /// Changes of nodes that no path has: in a record that was changed afterwards.
+    #[error("what happens to nodes up to state {step} is not what happens on a path with adhesion")]
+    WrongChanges {
+        /// Number of the state.
+        step: usize,
+    },
+
+    /// The record of a path with adhesion in place of one whose contact only grows.
+    #[error(
+        "{} is the record of a path with adhesion, whose nodes are pulled and part again: patches, leaks, stresses, slip \
+         and creep are made of contact that only grows and presses. `AdhesiveRecord` reads it", path.display()
+    )]
+    Record {
+        /// The file.
+        path: std::path::PathBuf,
+    },
 }

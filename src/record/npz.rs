@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{KernelRecord, LoadingRecord, Settings};
 use crate::contact::{ContactState, PlasticState};
+use crate::error::AdhesionError;
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::io::write_whole;
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
@@ -19,6 +20,8 @@ use crate::{Error, FileError, Grid};
 
 /// Name of the format in errors, and in the file itself.
 const NAME: &str = "asperity record";
+/// That of records with adhesion, which are read elsewhere.
+pub(super) const WITH_ADHESION: &str = "asperity record with adhesion";
 /// Grows with every change that older readers would misunderstand.
 const VERSION: u32 = 2;
 /// Version of records without a hardness, which older readers understand.
@@ -45,6 +48,12 @@ struct Parameters {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     window: Option<window_end::Numbers>,
     units: String,
+}
+
+/// What says of which kind a record is.
+#[derive(Debug, Deserialize)]
+struct Named {
+    format: String,
 }
 
 /// A whole number of a state.
@@ -256,8 +265,8 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`FileError::Io`]; [`FileError::BadFile`] for a file that is damaged, not a record, or of a newer version; those
-    /// of [`Self::from_parts`].
+    /// [`FileError::Io`]; [`FileError::BadFile`] for a file that is damaged, not a record, or of a newer version;
+    /// [`AdhesionError::Record`] for one with adhesion; those of [`Self::from_parts`].
     pub fn read_npz(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let archive = Archive::open(path, NAME)?;
@@ -270,6 +279,10 @@ impl LoadingRecord {
             })
         };
         let text = archive.text("parameters")?;
+        let named: Result<Named, _> = serde_json::from_str(&text);
+        if named.is_ok_and(|named| named.format == WITH_ADHESION) {
+            return Err(AdhesionError::Record { path: path.to_path_buf() }.into());
+        }
         let parameters: Parameters = serde_json::from_str(&text)
             .map_err(|error| bad(format!("its parameters are not understood: {error}")))?;
         if parameters.format != NAME {
@@ -347,7 +360,7 @@ impl LoadingRecord {
 }
 
 /// A whole number of a file.
-fn whole(value: f64) -> usize {
+pub(super) fn whole(value: f64) -> usize {
     value as usize
 }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use nalgebra::DMatrix;
 
+use crate::adhesion::CohesiveLaw;
 use crate::kernel::{Base, LayeredBody};
 use crate::number::{counted, quantity, significant};
 use crate::patches::{Connectivity, ContactEdge, Patches};
@@ -64,6 +65,22 @@ pub enum Warning {
         /// Typical hardness of the material \[Pa\], where it is known.
         hardness: Option<f64>,
     },
+    /// A cohesive law so steep that cells snap one by one, which makes loops of its own.
+    SteepLaw {
+        /// The slope of the law times the compliance of a cell.
+        resolution: f64,
+        /// The longer side of a cell \[m\].
+        cell: f64,
+        /// That of cells that would do \[m\].
+        cell_needed: f64,
+    },
+    /// Adhesion on summits that the grid does not resolve.
+    SmallSummits {
+        /// Contact radius of the highest summit at pull-off, in the limit of JKR, over the longer side of a cell.
+        cells: f64,
+        /// Radius of curvature of the highest summit \[m\].
+        radius: f64,
+    },
     /// Fluid that would open the gap through which it leaks.
     PressureDrop {
         /// Pressure drop of the fluid \[Pa\].
@@ -102,6 +119,11 @@ const SOLIDS: std::ops::RangeInclusive<f64> = 1e6..=2e12;
 /// second power of the load far from the closing of the last channel and as the twentieth power near it, so that a
 /// fiftieth changes them by 2 to 20 %.
 const DROP: f64 = 0.02;
+/// Slope times compliance of a cell from which on a front that crosses cells makes a loop, with rounding.
+const STEEP: f64 = 1.0 - 1e-12;
+/// Cells in the contact radius of a summit at pull-off: with 5 the force is 7 % too great, with fewer it depends on where
+/// the summit is between the nodes.
+const CELLS_OF_SUMMIT: f64 = 5.0;
 
 impl Warning {
     /// Warnings about a surface.
@@ -210,6 +232,24 @@ impl Warning {
         (pressure > borne).then_some(Self::HighPressure { pressure, e_star, hardness })
     }
 
+    /// Warnings about a law of adhesion on a surface, with the composite modulus.
+    #[must_use]
+    pub fn of_adhesion(surface: &Topography, law: &CohesiveLaw, e_star: f64) -> Vec<Self> {
+        let cell = surface.grid().dx().max(surface.grid().dy());
+        let resolution = law.resolution();
+        let steep = (law.cell_margin() < STEEP).then(|| Self::SteepLaw {
+            resolution,
+            cell,
+            cell_needed: cell * law.cell_margin(),
+        });
+        let sticks = law.work() > 0.0;
+        let small = radius_of_highest(surface).filter(|_| sticks).and_then(|radius| {
+            let cells = law.pull_off_radius(radius, e_star) / cell;
+            (cells < CELLS_OF_SUMMIT).then_some(Self::SmallSummits { cells, radius })
+        });
+        steep.into_iter().chain(small).collect()
+    }
+
     /// Warnings about the pressure drop of a fluid that leaks through contacts under these mean pressures \[Pa\].
     /// Without a load there is no contact to open.
     #[must_use]
@@ -304,6 +344,20 @@ impl fmt::Display for Warning {
                     "polymers yield at some 0.05 of E*"
                 }
             ),
+            Self::SteepLaw { resolution, cell, cell_needed } => write!(
+                f,
+                "the slope of the law of adhesion times the compliance of a cell is {resolution:.2}, above 0.5: cells snap one by \
+                 one, and part of the loop is made by the mesh. Cells of {} instead of {} make none, nor does a longer range",
+                quantity(cell_needed, "m", 3),
+                quantity(cell, "m", 3)
+            ),
+            Self::SmallSummits { cells, radius } => write!(
+                f,
+                "the highest summit, with a radius of {}, would be pulled off from a contact radius of {} cells: fewer than 5, and \
+                 the pull-off force depends on the mesh. Use a finer grid, or a smoother surface",
+                quantity(radius, "m", 3),
+                significant(cells, 2)
+            ),
             Self::PressureDrop { pressure_drop, mean_pressure, states } => {
                 write!(
                     f,
@@ -322,6 +376,22 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// Radius of curvature \[m\] about the highest node that has neighbours on all sides, by second differences; `None` on
+/// a profile and where it is no summit.
+fn radius_of_highest(surface: &Topography) -> Option<f64> {
+    let (grid, heights) = (surface.grid(), surface.map().matrix());
+    let (nx, ny) = grid.shape();
+    let inner = (1..ny.max(1) - 1).flat_map(|iy| (1..nx.max(1) - 1).map(move |ix| (ix, iy)));
+    let (ix, iy) = inner.max_by(|&a, &b| heights[a].total_cmp(&heights[b]))?;
+    let along = |before: f64, after: f64, step: f64| {
+        (2.0 * heights[(ix, iy)] - before - after) / (step * step)
+    };
+    let of_x = along(heights[(ix - 1, iy)], heights[(ix + 1, iy)], grid.dx());
+    let of_y = along(heights[(ix, iy - 1)], heights[(ix, iy + 1)], grid.dy());
+    let curvature = 0.5 * (of_x + of_y);
+    (curvature > 0.0).then(|| curvature.recip())
 }
 
 /// Whether nodes in contact are one patch.

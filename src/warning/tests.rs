@@ -37,6 +37,8 @@ fn a_warning_that_does_not_fit_is_an_error() {
         Warning::SmallPatches { contact_nodes: 7, excess: 0.3 },
         Warning::EdgePeak { pressure, inside: 1.0 },
         Warning::WideCells { cell: 2.0, thickness: 1.0 },
+        Warning::SteepLaw { resolution: 0.6, cell: 1e-6, cell_needed: 8e-7 },
+        Warning::SmallSummits { cells: 2.0, radius: 1e-6 },
         Warning::PressureDrop { pressure_drop: 1.0, mean_pressure: 2.0, states: 3 },
         Warning::Modulus { e_star },
         Warning::Modulus { e_star: 1e-9 },
@@ -311,5 +313,34 @@ fn a_single_patch_of_few_nodes_is_noticed() -> Result<(), Error> {
     two.view_mut((20, 20), (6, 4)).fill(true);
     assert!(two.iter().filter(|is_in| **is_in).count() < 50);
     assert_eq!(warned(&two)?, []);
+    Ok(())
+}
+
+/// Slopes of 0.45 and of 0.6, and spheres whose contact at pull-off has 6 cells in its radius, and 4.
+#[test]
+fn laws_and_summits_that_the_grid_does_not_resolve_are_noticed() -> Result<(), Error> {
+    use crate::adhesion::Adhesion;
+    let (e_star, work) = (1e6, 0.05);
+    let grid = Grid::square(32, 1e-5)?;
+    let half_space = Boussinesq::new(grid, e_star)?;
+    let shortest = Adhesion::work(work).on(&half_space)?;
+    // k C(0, 0) falls with the square of the range.
+    let steep = Adhesion::work(work).range(shortest.range() * (0.45_f64 / 0.6).sqrt());
+    let steep = steep.on(&half_space)?;
+    // (9π w R² / 8E*)^⅓ = n dx
+    let radius = |cells: f64| {
+        let a = cells * grid.dx();
+        (8.0 * e_star * a * a * a / (9.0 * std::f64::consts::PI * work)).sqrt()
+    };
+    for (cells, is_small) in [(6.0, false), (4.0, true)] {
+        // A node is at its summit.
+        let sphere = ball(&grid, radius(cells), (0.5, 0.5))?;
+        for (law, is_steep) in [(&shortest, false), (&steep, true)] {
+            let found = Warning::of_adhesion(&sphere, law, e_star);
+            let about = |is: fn(&Warning) -> bool| found.iter().any(is);
+            assert_eq!(about(|w| matches!(w, Warning::SteepLaw { .. })), is_steep, "{found:?}");
+            assert_eq!(about(|w| matches!(w, Warning::SmallSummits { .. })), is_small, "{found:?}");
+        }
+    }
     Ok(())
 }

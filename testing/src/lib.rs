@@ -6,6 +6,7 @@
 //! | [`altered`] | an updater some of whose answers are changed by closures |
 //! | [`bordering`] | an updater with the three verbs that every path needs |
 //! | [`dense`] | influence matrices, and dense solutions that share no code with the library |
+//! | [`equilibria`] | all equilibria of a few nodes that stick |
 //! | [`page`] | tables of pages in Markdown |
 //! | [`surfaces`] | heights of rough surfaces |
 //! | `random` | random surfaces for property tests (feature `proptest`) |
@@ -19,6 +20,7 @@ pub mod altered;
 pub mod bordering;
 pub mod close;
 pub mod dense;
+pub mod equilibria;
 pub mod page;
 #[cfg(feature = "proptest")]
 pub mod random;

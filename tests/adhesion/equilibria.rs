@@ -1,85 +1,12 @@
 //! Every equilibrium of a small grid, found by trying all states of all nodes: loading is at the one of the greatest
 //! gaps, and unloading at that of the least.
 
-use asperity::adhesion::{Adhesion, AdhesiveEvent, AdhesiveFields, AdhesivePath, CohesiveLaw};
+use asperity::adhesion::{Adhesion, AdhesiveEvent, AdhesivePath};
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, ContactTarget, Grid, InfluenceKernel, PeriodicBoussinesq, Problem};
+use asperity::{Boussinesq, ContactTarget, Grid, InfluenceKernel, PeriodicBoussinesq};
+use asperity_testing::equilibria::Equilibria;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-
-/// Influence, initial gaps and law.
-struct Small {
-    matrix: DMatrix<f64>,
-    gap: DVector<f64>,
-    law: CohesiveLaw,
-}
-
-const OPEN: usize = 0;
-const SOFT: usize = 1;
-const CONTACT: usize = 2;
-const COHESIVE: usize = 3;
-
-impl Small {
-    fn of(problem: &Problem, law: CohesiveLaw) -> Self {
-        let nodes = problem.initial_gap().len();
-        Self {
-            matrix: DMatrix::from_fn(nodes, nodes, |i, j| problem.coefficient(i, j).unwrap()),
-            gap: DVector::from_column_slice(problem.initial_gap()),
-            law,
-        }
-    }
-
-    /// The approach in the gauge of the kernel.
-    fn approach(&self, fields: &AdhesiveFields) -> f64 {
-        let pressure = DVector::from_column_slice(fields.pressure.as_slice());
-        (&self.gap + &self.matrix * pressure)[0] - fields.gap[0]
-    }
-
-    /// Gaps of the state with nodes so, if that is a strict minimum of the energy.
-    fn equilibrium(&self, nodes: &[usize], approach: f64) -> Option<DVector<f64>> {
-        let law = &self.law;
-        let size = nodes.len();
-        let free: Vec<usize> = (0..size).filter(|&i| matches!(nodes[i], SOFT | CONTACT)).collect();
-        let mut pressure =
-            DVector::from_fn(size, |i, _| if nodes[i] == COHESIVE { -law.stress() } else { 0.0 });
-        let base = &self.gap + &self.matrix * &pressure;
-        let shift = |i: usize| if nodes[i] == SOFT { 1.0 / law.slope() } else { 0.0 };
-        let reduced = DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            self.matrix[(free[i], free[j])] - if i == j { shift(free[i]) } else { 0.0 }
-        });
-        let right = DVector::from_fn(free.len(), |i, _| {
-            let range = if nodes[free[i]] == SOFT { law.range() } else { 0.0 };
-            range + approach - base[free[i]]
-        });
-        let solved =
-            if free.is_empty() { right.clone() } else { reduced.clone().lu().solve(&right)? };
-        free.iter().zip(solved.iter()).for_each(|(&i, &p)| pressure[i] = p);
-        let gap = &self.gap + &self.matrix * &pressure - DVector::from_element(size, approach);
-        let is_on_law = (0..size).all(|i| match nodes[i] {
-            OPEN => gap[i] > law.range(),
-            SOFT => gap[i] < law.range() && gap[i] > law.flat_range(),
-            COHESIVE => gap[i] < law.flat_range() && gap[i] > 0.0,
-            _ => pressure[i] > -law.stress(),
-        });
-        let soft = nodes.iter().filter(|&&node| node == SOFT).count();
-        let is_stable = || {
-            let values = match free.len() {
-                0 => Vec::new(),
-                1 => vec![reduced[(0, 0)]],
-                _ => reduced.clone().symmetric_eigenvalues().as_slice().to_vec(),
-            };
-            values.iter().filter(|&&value| value < 0.0).count() == soft
-        };
-        (is_on_law && is_stable()).then_some(gap)
-    }
-
-    fn all(&self, kinds: usize, approach: f64) -> Vec<DVector<f64>> {
-        let size = self.gap.len() as u32;
-        let states = (0..kinds.pow(size))
-            .map(|code| (0..size).map(|i| code / kinds.pow(i) % kinds).collect::<Vec<usize>>());
-        states.filter_map(|nodes| self.equilibrium(&nodes, approach)).collect()
-    }
-}
 
 /// Compares states of both branches at some approaches with all equilibria there; returns how many there were at most.
 fn check(
@@ -91,7 +18,7 @@ fn check(
     let (nx, ny) = kernel.grid().shape();
     let surface = HeightMap::new(DMatrix::from_vec(nx, ny, heights)).unwrap();
     let mut path = AdhesivePath::builder(&surface, kernel, law).build().unwrap();
-    let small = Small::of(path.problem(), path.law());
+    let small = Equilibria::of(path.problem(), path.law());
     let kinds = if path.law().flat_range() > 0.0 { 4 } else { 3 };
     ends.sort_by(f64::total_cmp);
     let mut most = 0;

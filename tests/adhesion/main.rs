@@ -7,3 +7,4 @@ mod reference_branches;
 mod special;
 mod targets;
 mod walks;
+mod waves;

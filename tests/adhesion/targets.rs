@@ -3,10 +3,12 @@
 use asperity::adhesion::{
     Adhesion, AdhesiveEnd, AdhesiveEvent, AdhesivePath, AdhesiveState, Direction,
 };
+use asperity::loading::History;
+use asperity::record::AdhesiveRecord;
 use asperity::surface::{Amplitude, SelfAffine};
 use asperity::{
-    AdhesionError, Boundary, Boussinesq, ContactGrowth, ContactTarget, Error, Grid,
-    InfluenceKernel, KernelTable, LoadingSolver,
+    AdhesionError, Boundary, Boussinesq, ContactGrowth, ContactState, ContactTarget, Error, Grid,
+    InfluenceKernel, KernelTable, LoadingSolver, LoadingState, PeriodicBoussinesq,
 };
 
 fn kernel() -> Boussinesq {
@@ -128,6 +130,77 @@ fn little_adhesion_is_none() {
     assert!(stress < 1e-4 * elastic.contact.load);
     assert!((last.contact.load - elastic.contact.load).abs() < 10.0 * stress);
     assert_eq!(last.contact.contact_nodes, elastic.contact.contact_nodes);
+}
+
+/// Without any adhesion the states are those of the elastic path bit for bit, on the way there, back and there again.
+#[test]
+fn no_adhesion_is_the_elastic_path() {
+    let (surface, grid) = (surface(), kernel().grid());
+    let free: Box<dyn InfluenceKernel> = Box::new(kernel());
+    let periodic: Box<dyn InfluenceKernel> = Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap());
+    for kernel in [free, periodic] {
+        let mut elastic =
+            LoadingSolver::builder(&surface, &*kernel).max_area_fraction(0.3).build().unwrap();
+        let expected: Vec<LoadingState> = elastic.by_ref().map(Result::unwrap).collect();
+        let history: History = expected.iter().copied().collect();
+        let end = expected.last().unwrap().contact;
+        let mut path = AdhesivePath::builder(&surface, &*kernel, Adhesion::work(0.0))
+            .until(ContactTarget::AreaFraction(0.3))
+            .build()
+            .unwrap();
+        let loading = path.run().unwrap();
+        assert_eq!(loading.states().len(), expected.len());
+        for (found, expected) in loading.states().iter().zip(&expected) {
+            let contact = expected.contact;
+            assert_eq!((found.node, found.contact), (expected.node, contact));
+            assert_eq!(found.work, contact.energy);
+        }
+        assert_eq!((loading.pull_off(), loading.dissipated()), (0.0, 0.0));
+        assert_eq!(path.end(), Some(AdhesiveEnd::Target));
+        // Back to a load between two events, and on to one beyond the first end.
+        let (half, more) = (0.5 * end.load, 1.3 * end.load);
+        path.unload_to(ContactTarget::Load(half)).unwrap();
+        let back = path.run().unwrap();
+        let last = back.states().last().unwrap();
+        assert_eq!(last.contact, history.at_load(half).unwrap().contact);
+        let parted = back.states().iter().filter(|state| state.event == AdhesiveEvent::Part);
+        assert_eq!(parted.count(), end.contact_nodes - last.contact.contact_nodes);
+        path.load_to(ContactTarget::Load(more)).unwrap();
+        let again = path.run().unwrap();
+        let mut further =
+            LoadingSolver::builder(&surface, &*kernel).max_load(more).build().unwrap();
+        let further: Vec<LoadingState> = further.by_ref().map(Result::unwrap).collect();
+        let touches = again.states().iter().filter(|state| state.event == AdhesiveEvent::Touch);
+        let touches: Vec<ContactState> = touches.map(|state| state.contact).collect();
+        let end_of_touches = further.len() - 1;
+        let begin = end_of_touches - touches.len();
+        for (found, expected) in touches.iter().zip(&further[begin..end_of_touches]) {
+            // A path that has continued beyond its end has other windows.
+            assert_eq!(found.contact_nodes, expected.contact.contact_nodes);
+            assert!((found.load / expected.contact.load - 1.0).abs() < 1e-10);
+        }
+        assert_eq!(path.state().unwrap().contact.load, more);
+        // Fields of a state on the way back, and all the way, of a record too.
+        let all = [&loading, &back, &again].into_iter().flat_map(|branch| branch.states());
+        let record = AdhesiveRecord::new(&path, all.copied().collect()).unwrap();
+        path.unload().unwrap();
+        let off = path.run().unwrap();
+        let mut other = record.path().unwrap();
+        other.unload().unwrap();
+        for (found, expected) in other.run().unwrap().states().iter().zip(off.states()) {
+            assert_eq!((found.step, found.node), (expected.step, expected.node));
+            let (found, expected) = (found.contact.load, expected.contact.load);
+            assert!((found - expected).abs() <= 1e-10 * more);
+        }
+        assert_eq!(off.states().len(), last.contact.contact_nodes + touches.len());
+        let first = off.states().last().unwrap();
+        assert_eq!((first.contact.contact_nodes, first.contact.load), (0, 0.0));
+        let state = back.states()[3];
+        let fields = path.fields_at(&state).unwrap();
+        let load = grid.cell_area() * fields.pressure.sum();
+        assert!((load / state.contact.load - 1.0).abs() < 1e-10);
+        assert!(fields.pressure.min() > -1e-10 * fields.pressure.max());
+    }
 }
 
 #[test]

@@ -12,13 +12,15 @@ mod followed;
 mod kept;
 mod rows;
 mod solved;
+mod sticking;
 mod stressed;
 
 use std::path::Path;
 
 use asperity::kernel::Layering;
 use asperity::{
-    BedError, Boundary, ContactEvent, Error, FixedLoadSolver, KernelError, LoadingSolver,
+    AdhesionError, BedError, Boundary, ContactEvent, Error, FixedLoadSolver, KernelError,
+    LoadingSolver,
 };
 use asperity_testing::page::tables;
 
@@ -60,6 +62,7 @@ fn reason(error: &Error) -> &'static str {
     match error {
         Error::Bed(BedError::NotElasticGrowth { happens: "yields", .. }) => "a",
         Error::NotHomogeneous { .. } => "b",
+        Error::Adhesion(AdhesionError::Record { .. }) => "e",
         Error::Bed(BedError::NotElasticGrowth { .. }) | Error::NodeLeaves { .. } => "c",
         other => panic!("{other}"),
     }
@@ -83,6 +86,9 @@ fn column(name: &str) {
             if refused.is_empty() { found == "yes" } else { refused.contains(&found) };
         assert!(is_expected, "{} x {name}: {found}, and the page has {refused:?}", row.name);
     }
+    let line = table.iter().find(|line| line[0] == sticking::NAME).unwrap();
+    let found = sticking::column(name).map_or_else(|error| reason(&error), |()| "yes");
+    assert_eq!(found, line[place], "{} x {name}", sticking::NAME);
 }
 
 #[test]
@@ -219,7 +225,8 @@ fn the_page_has_all_entries() {
     let columns: Vec<&str> = columns.chain(ELSEWHERE.map(|(name, _)| name)).collect();
     assert_eq!(header[1..], columns);
     let rows: Vec<&str> = lines.iter().map(|line| line[0].as_str()).collect();
-    assert_eq!(rows, rows::all().iter().map(|row: &Row| row.name).collect::<Vec<_>>());
+    let names = rows::all().iter().map(|row: &Row| row.name);
+    assert_eq!(rows, names.chain([sticking::NAME]).collect::<Vec<_>>());
     for cell in lines.iter().flat_map(|line| &line[1..]) {
         let reason = format!("\n* **{cell}**: ");
         assert!(cell == "yes" || page.contains(&reason), "no reason for {cell}");

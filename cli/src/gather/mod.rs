@@ -106,6 +106,13 @@ fn check_alike(files: &[PathBuf]) -> Result<(), Failure> {
     let mut first: Option<(String, Settings)> = None;
     for folder in files.iter().filter_map(|file| file.parent()) {
         let settings = Settings::read(folder)?;
+        if settings.has("adhesion") {
+            return Err(Failure::request(format!(
+                "{} holds a path with adhesion: it comes to a load on two branches, and `gather` takes means of contact that only \
+                 grows; `asperity path --seeds` prints the pull-off force of each surface",
+                folder.display()
+            )));
+        }
         let name = folder.display().to_string();
         match &first {
             None => first = Some((name, settings)),

@@ -4,20 +4,15 @@ use std::path::{Path, PathBuf};
 
 use asperity::LoadingState;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
 use super::job::Job;
+use super::sheet;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLUE, ORANGE};
 use asperity_cli::half_space::is_of_mean_planes;
 use asperity_cli::number::{counted, quantity};
-use asperity_cli::outcome::{self, Failure};
-use asperity_cli::panel::{Area, Drawn, Panel, anchor};
-
-/// Width and height of the picture.
-const SIZE: (i32, i32) = (1240, 980);
-/// Drawing units to a pixel: plotters rounds to whole ones.
-const FINE: i32 = 8;
+use asperity_cli::outcome::Failure;
+use asperity_cli::panel::{Area, Drawn};
 
 /// A quantity of a state.
 type Quantity = fn(&LoadingState) -> f64;
@@ -31,14 +26,7 @@ pub(super) fn draw(
     directory: &Path,
 ) -> Result<PathBuf, Failure> {
     let name = directory.join("loading_curve.svg");
-    let (width, height) = (SIZE.0 * FINE, SIZE.1 * FINE);
-    let mut text = String::new();
-    let backend = SVGBackend::with_string(&mut text, (width as u32, height as u32));
-    let drawn = panels(&backend.into_drawing_area(), job, states);
-    drawn.map_err(|error| Failure::writing(&name, error.to_string()))?;
-    let fine = format!("width=\"{width}\" height=\"{height}\"");
-    let size = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
-    outcome::write(&name, text.replacen(&fine, &size, 1))
+    sheet::write(&name, |area| panels(area, job, states).map_err(|error| error.to_string()))
 }
 
 fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState]) -> Drawn<DB> {
@@ -54,17 +42,12 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         quantity(job.e_star(), "Pa", 4),
         quantity(job.heights().rms_height(), "m", 4)
     );
-    let centred = |text: &str, y: i32| {
-        let at = (FINE * SIZE.0 / 2, FINE * y);
-        let pos = anchor(HPos::Center, VPos::Center);
-        panel(0).write(area, text, at, 22 * FINE, pos)
-    };
-    centred(&title, 34)?;
+    sheet::title(area, &title)?;
 
     let loaded: Vec<LoadingState> =
         states.iter().filter(|s| s.contact.load > 0.0).copied().collect();
     let Some((from, to)) = extent(&loaded, &[|s| s.contact.load]) else {
-        centred("No state of this path carries load.", SIZE.1 / 2)?;
+        sheet::instead(area, "No state of this path carries load.")?;
         return area.present();
     };
     let load = || Axis::logarithmic("load W", "N", from, to).with_room(0.0, 0.02);
@@ -123,44 +106,17 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         ),
     ];
     for (place, (y, curves)) in (0_i32..).zip(all) {
-        let panel = panel(place);
+        let panel = sheet::panel(place);
         let x = load();
         panel.rule(area, &x, &y)?;
         for (value, colour, _) in curves {
             let points = loaded.iter().map(|state| (state.contact.load, value(state)));
             panel.curve(area, (&x, &y), points, *colour)?;
         }
-        legend(area, &panel, curves)?;
+        sheet::legend(area, &panel, curves.iter().map(|(_, colour, name)| (*colour, *name)))?;
         panel.frame(area, &x, &y)?;
     }
     area.present()
-}
-
-/// The panel at a place from 0 to 3, row by row.
-fn panel(place: i32) -> Panel {
-    Panel {
-        left: FINE * (120 + (place % 2) * 620),
-        top: FINE * (76 + (place / 2) * 460),
-        width: FINE * 470,
-        height: FINE * 350,
-        font: FINE * 17,
-        stroke: FINE as u32,
-        text_rise: 0.0,
-    }
-}
-
-/// Names of the curves of a panel, in its upper left corner.
-fn legend<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, curves: &[Curve]) -> Drawn<DB> {
-    let named = curves.iter().filter(|(_, _, name)| !name.is_empty());
-    for (line, (_, colour, name)) in (0_i32..).zip(named) {
-        let x = panel.left + 18 * FINE;
-        let y = panel.top + (24 + 26 * line) * FINE;
-        let stroke = colour.stroke_width(3 * FINE as u32);
-        area.draw(&PathElement::new(vec![(x, y), (x + 34 * FINE, y)], stroke))?;
-        let pos = anchor(HPos::Left, VPos::Center);
-        panel.write(area, name, (x + 44 * FINE, y), panel.font, pos)?;
-    }
-    Ok(())
 }
 
 /// NaN, which is not drawn, where nothing has yielded.

@@ -166,6 +166,8 @@ impl Work {
 pub(super) struct Expected {
     /// In contact at its end.
     contact: f64,
+    /// Whether that is without what adhesion adds.
+    is_least: bool,
     seconds: f64,
     bytes: f64,
 }
@@ -206,9 +208,17 @@ impl Expected {
         let events = 1.0 + end.yielded / end.contact.max(1.0);
         Ok(Self {
             contact: end.contact,
+            is_least: false,
             seconds: set_up + events * loading + if unloads { unloading } else { 0.0 } + output,
             bytes: if unloads { back.bytes().max(work.bytes()) } else { work.bytes() },
         })
+    }
+
+    /// The same of what takes so many times as long, and so many times as much memory besides that of the program, with
+    /// at least these nodes in contact.
+    pub(super) fn scaled(self, slower: f64, larger: f64, is_least: bool) -> Self {
+        let bytes = PROGRAM + larger * (self.bytes - PROGRAM).max(0.0);
+        Self { seconds: slower * self.seconds, bytes, is_least, ..self }
     }
 
     /// For programs.
@@ -316,7 +326,8 @@ impl fmt::Display for Expected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "about {} in contact, {} and {} of memory",
+            "{}about {} in contact, {} and {} of memory",
+            if self.is_least { "without what adhesion adds, " } else { "" },
             counted(self.contact.round(), "node"),
             quantity(self.seconds, "s", 2),
             quantity(self.bytes, "B", 2)

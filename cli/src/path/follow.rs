@@ -1,8 +1,6 @@
 //! Following the path, and its files.
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -14,14 +12,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::interrupt::Interrupt;
 use super::job::Job;
+use super::lines::{Lines, STRIDE, printed};
 use super::{Solver, save};
 use crate::conduction::Named;
 use asperity_cli::number::{counted, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::speech;
-
-/// States between two looks at the progress bar and two visits to the disk.
-const STRIDE: usize = 64;
 
 /// A path as far as it has come, with its files.
 pub(super) struct Followed {
@@ -56,17 +52,8 @@ impl Followed {
         solver: &mut Solver,
         interrupt: &Interrupt,
     ) -> Result<(), Failure> {
-        let bar = ProgressBar::new(100);
+        let bar = bar();
         let start = Instant::now();
-        if let Ok(style) =
-            ProgressStyle::with_template("{wide_bar:.blue} {percent:>3} %  {elapsed}  {msg}")
-        {
-            bar.set_style(style.progress_chars("━╸─"));
-        }
-        if speech::is_quiet() {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
         let mut ended = Ok(());
         interrupt.wait();
         while ended.is_ok()
@@ -76,7 +63,7 @@ impl Followed {
             ended = state.map_err(|error| Failure::new("the path broke off", error)).and_then(
                 |state| {
                     if state.step.is_multiple_of(STRIDE) {
-                        let progress = job.progress(&state);
+                        let progress = job.progress(&state.contact);
                         bar.set_position((100.0 * progress.done) as u64);
                         let load = scientific(state.contact.load, 3);
                         let left = progress.left(start.elapsed());
@@ -110,19 +97,28 @@ impl Followed {
     }
 }
 
-/// The file `path.csv`: one line for each state. While it is written its name is `path.csv.part`, and what it holds
-/// are whole lines.
+/// A bar for progress in percent, unless people want none.
+pub(super) fn bar() -> ProgressBar {
+    let bar = ProgressBar::new(100);
+    if let Ok(style) =
+        ProgressStyle::with_template("{wide_bar:.blue} {percent:>3} %  {elapsed}  {msg}")
+    {
+        bar.set_style(style.progress_chars("━╸─"));
+    }
+    if speech::is_quiet() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// The file `path.csv`: one line for each state.
 pub(super) struct PathFile {
     table: PathTable,
     /// The conductances that were asked for, and of which body.
     conductions: Vec<Named>,
     body: Layering,
-    name: PathBuf,
-    part: PathBuf,
-    output: File,
-    /// Lines that are not in the file yet, and their number.
-    lines: String,
-    waiting: usize,
+    lines: Lines,
 }
 
 impl PathFile {
@@ -132,21 +128,12 @@ impl PathFile {
         table: PathTable,
         (conductions, body): (Vec<Named>, Layering),
     ) -> Result<Self, Failure> {
-        let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
-        let begin = || {
-            match fs::remove_file(&name) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-            File::create(&part)
-        };
-        let output = begin().map_err(|error| Failure::writing(&part, error))?;
-        let mut lines = PathTable::HEADER.to_string();
+        let mut header = PathTable::HEADER.to_string();
         for (name, _) in &conductions {
-            lines += &format!(",{name}");
+            header += &format!(",{name}");
         }
-        lines.push('\n');
-        Ok(Self { table, conductions, body, name, part, output, lines, waiting: 0 })
+        let lines = Lines::create(directory, &header)?;
+        Ok(Self { table, conductions, body, lines })
     }
 
     /// The whole file at once, in place of the one that is there.
@@ -163,37 +150,18 @@ impl PathFile {
 
     /// Adds a state.
     fn write(&mut self, state: &LoadingState) -> Result<(), Failure> {
-        let line = self.table.line(state).map_err(|error| Failure::writing(&self.part, error))?;
-        self.lines += &line;
+        let failed = |error| Failure::writing(self.lines.part(), error);
+        let mut line = self.table.line(state).map_err(failed)?;
         for (_, conduction) in &self.conductions {
-            let conductance = conduction.of(&state.contact, self.body);
-            let conductance = conductance.map_err(|error| Failure::writing(&self.part, error))?;
-            self.lines.push(',');
-            if let Some(conductance) = conductance {
-                // Writing to a text cannot fail.
-                let _ = write!(self.lines, "{conductance:e}");
-            }
+            let conductance = conduction.of(&state.contact, self.body).map_err(failed)?;
+            // Writing to a text cannot fail.
+            let _ = write!(line, ",{}", printed(conductance));
         }
-        self.lines.push('\n');
-        self.waiting += 1;
-        if self.waiting == STRIDE {
-            self.flush().map_err(|error| Failure::writing(&self.part, error))?;
-        }
-        Ok(())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.output.write_all(self.lines.as_bytes())?;
-        self.lines.clear();
-        self.waiting = 0;
-        Ok(())
+        self.lines.add(&line)
     }
 
     /// Ends the file, and gives it its name.
-    pub(super) fn finish(mut self) -> Result<PathBuf, Failure> {
-        self.flush()
-            .and_then(|()| fs::rename(&self.part, &self.name))
-            .map_err(|error| Failure::writing(&self.part, error))?;
-        Ok(self.name)
+    pub(super) fn finish(self) -> Result<PathBuf, Failure> {
+        self.lines.finish()
     }
 }

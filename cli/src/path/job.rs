@@ -3,13 +3,15 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use asperity::adhesion::AdhesivePath;
+use asperity::contact::ContactState;
 use asperity::kernel::Layering;
 use asperity::loading::History;
-use asperity::record::LoadingRecord;
+use asperity::record::{AdhesiveRecord, LoadingRecord};
 use asperity::surface::{HeightMap, Topography};
 use asperity::{
-    Boundary, ContactRule, ContactTarget, Error, Grid, InfluenceKernel, LoadingSolver,
-    LoadingState, Warning,
+    AdhesionError, Boundary, ContactRule, ContactTarget, Error, Grid, InfluenceKernel,
+    LoadingSolver, LoadingState, Warning,
 };
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
@@ -22,6 +24,7 @@ use super::parts::Parts;
 use super::progress::Progress;
 use super::source::{fingerprint, read};
 use super::updater::{Updater, no_room};
+use crate::adhesion::Law;
 use crate::at::At;
 use crate::elasticity::Bodies;
 use crate::reading::Reading;
@@ -44,6 +47,8 @@ pub(super) struct Job {
     /// Of each node \[Pa\], if nodes yield.
     hardness: Option<DMatrix<f64>>,
     hardness_in_words: String,
+    /// The law of adhesion, if the surfaces stick.
+    law: Option<Law>,
     rule: ContactRule,
     updater: Updater,
     memory_budget: Option<usize>,
@@ -53,6 +58,7 @@ pub(super) struct Job {
     at: Vec<At>,
     /// What there is of the path already.
     begun: Option<History>,
+    begun_with_adhesion: Option<AdhesiveRecord>,
     /// Where its record goes.
     record: Option<PathBuf>,
     settings: Settings,
@@ -93,11 +99,13 @@ impl Job {
             targets: targets(options, &grid),
             at: options.at.clone(),
             begun: None,
+            begun_with_adhesion: None,
             record: options.record.clone(),
             settings: settings(options, (&bodies, &grid), source)?,
             hardness,
             bodies,
             surface,
+            law: options.sticking.law(),
         })
     }
 
@@ -110,7 +118,12 @@ impl Job {
     /// The path of a record.
     fn resumed(file: &Path, options: &Options) -> Result<Self, Failure> {
         let failed = |error| Failure::new(format!("cannot resume {}", file.display()), error);
-        let record = LoadingRecord::read_npz(file).map_err(failed)?;
+        let record = match LoadingRecord::read_npz(file) {
+            Err(Error::Adhesion(AdhesionError::Record { .. })) => {
+                return Self::resumed_with_adhesion(file, options);
+            }
+            record => record.map_err(failed)?,
+        };
         let (periodic, bodies) = Bodies::of_record(&record).map_err(failed)?;
         let heights = record.heights().matrix().clone();
         let surface =
@@ -146,6 +159,7 @@ impl Job {
             bodies: &bodies,
             periodic,
             hardness: hardness.as_ref(),
+            law: None,
             rule: record.settings().rule,
             updater: options.updater,
             targets: &targets,
@@ -166,8 +180,60 @@ impl Job {
             hardness,
             surface,
             begun: Some(history),
+            begun_with_adhesion: None,
             record: kept,
+            law: None,
         })
+    }
+
+    /// The path of a record with adhesion, to the end that is given: such a record remembers none.
+    fn resumed_with_adhesion(file: &Path, options: &Options) -> Result<Self, Failure> {
+        let failed = |error| Failure::new(format!("cannot resume {}", file.display()), error);
+        let record = AdhesiveRecord::read_npz(file).map_err(failed)?;
+        let (periodic, bodies) = Bodies::of_kernel(&record.kernel().origin, &[]).map_err(failed)?;
+        let heights = record.heights().matrix().clone();
+        let surface =
+            Topography::new(record.grid(), heights).map_err(|error| failed(error.into()))?;
+        let targets = targets(options, surface.grid());
+        let source = json!({
+            "record": file.display().to_string(),
+            "heights_md5": fingerprint(&surface),
+        });
+        let law = Some(Law::of(record.adhesion()));
+        let parts = Parts {
+            bodies: &bodies,
+            periodic,
+            hardness: None,
+            law,
+            rule: ContactRule::FirstContact,
+            updater: options.updater,
+            targets: &targets,
+        };
+        let states = counted(record.states().states().len(), "state");
+        Ok(Self {
+            name: format!("{}, {states}", file.display()),
+            rms_gradient: rms_gradient(&surface)?,
+            settings: parts.settings(surface.grid(), source)?,
+            periodic,
+            hardness: None,
+            hardness_in_words: String::new(),
+            law,
+            rule: parts.rule,
+            updater: options.updater,
+            memory_budget: options.memory_budget,
+            targets,
+            at: options.at.clone(),
+            bodies,
+            surface,
+            begun: None,
+            begun_with_adhesion: Some(record),
+            record: Some(options.record.clone().unwrap_or_else(|| file.to_path_buf())),
+        })
+    }
+
+    /// What there is of a path with adhesion already.
+    pub(super) fn begun_with_adhesion(&self) -> Option<&AdhesiveRecord> {
+        self.begun_with_adhesion.as_ref()
     }
 
     /// The events that the path had already, in a record.
@@ -212,6 +278,36 @@ impl Job {
                 (self.updater, kernel.boundary(), self.memory_budget),
             )
         })
+    }
+
+    /// The path with adhesion, at its beginning or where it was interrupted.
+    pub(super) fn adhesive_path(&self) -> Result<AdhesivePath, Failure> {
+        if let Some(record) = &self.begun_with_adhesion {
+            return record.path().map_err(|error| Failure::new("cannot resume", error));
+        }
+        let kernel = self.kernel()?;
+        let Some(law) = self.law else {
+            return Err(Failure::request("nothing sticks here: give --work-of-adhesion"));
+        };
+        let mut builder = AdhesivePath::builder(&self.surface, &kernel, law.adhesion());
+        let at = self.at.iter().map(|at| at.target(self.grid().nominal_area()));
+        for target in self.targets.iter().copied().chain(at) {
+            builder = builder.until(target);
+        }
+        if let Some(budget) = self.memory_budget {
+            builder = builder.memory_budget(budget);
+        }
+        builder.build().map_err(|error| Failure::new("cannot set up the path with adhesion", error))
+    }
+
+    /// The law of adhesion, if the surfaces stick.
+    pub(super) fn law(&self) -> Option<Law> {
+        self.law
+    }
+
+    /// The surface.
+    pub(super) fn surface(&self) -> &Topography {
+        &self.surface
     }
 
     /// What surface it is of.
@@ -295,18 +391,24 @@ impl Job {
     }
 
     /// How far a state is on the way to the nearest target: load grows about in proportion to nodes.
-    pub(super) fn progress(&self, state: &LoadingState) -> Progress {
+    pub(super) fn progress(&self, contact: &ContactState) -> Progress {
         let shares = self.targets.iter().map(|target| match *target {
-            ContactTarget::Load(load) => state.contact.load / load,
-            ContactTarget::Approach(approach) => state.contact.approach / approach,
-            ContactTarget::AreaFraction(fraction) => state.contact.contact_area_fraction / fraction,
+            ContactTarget::Load(load) => contact.load / load,
+            ContactTarget::Approach(approach) => contact.approach / approach,
+            ContactTarget::AreaFraction(fraction) => contact.contact_area_fraction / fraction,
             _ => 0.0,
         });
-        let share = shares.fold(state.contact.contact_area_fraction, f64::max).min(1.0);
+        let share = shares.fold(contact.contact_area_fraction, f64::max).min(1.0);
         let nodes = self.grid().nodes();
-        Progress::new(state.contact.contact_nodes, share, |contact| {
+        Progress::new(contact.contact_nodes, share, |contact| {
             self.updater.event_seconds(nodes, contact)
         })
+    }
+
+    /// How far unloading is that began with so many nodes in contact.
+    pub(super) fn progress_back(&self, contact: usize, most: usize) -> Progress {
+        let nodes = self.grid().nodes();
+        Progress::back(contact, most, |contact| self.updater.event_seconds(nodes, contact))
     }
 
     /// A load or an approach that was asked for and not reached, in words.
@@ -373,6 +475,9 @@ impl fmt::Display for Job {
         if self.hardness.is_some() {
             writeln!(f, "hardness   {}", self.hardness_in_words)?;
         }
+        if let Some(law) = self.law {
+            writeln!(f, "adhesion   {law}")?;
+        }
         match self.periodic {
             None => writeln!(f, "half-space free")?,
             Some(kernel) => writeln!(f, "half-space {}", kernel.in_words())?,
@@ -416,6 +521,7 @@ fn settings(
         bodies,
         periodic: options.periodic,
         hardness: hardness.as_ref(),
+        law: options.sticking.law(),
         rule: options.rule.into(),
         updater: options.updater,
         targets: &targets(options, grid),

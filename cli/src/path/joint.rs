@@ -96,6 +96,11 @@ impl Joint {
         Ok(all)
     }
 
+    /// Whether anything is asked for.
+    pub(super) fn is_asked(&self, conductions: &[Named]) -> bool {
+        !conductions.is_empty() || self.unresolved_roughness.is_some() || self.fe_table.is_some()
+    }
+
     /// Whether anything is asked for that follows from the stiffness of the contact.
     pub(super) fn needs_stiffness(&self, conductions: &[Named]) -> bool {
         !conductions.is_empty() || self.friction.is_some()

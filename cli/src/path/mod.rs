@@ -5,6 +5,7 @@
 //! everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and `path.csv` are
 //! written, and the exit code is 130.
 
+mod adhesive;
 mod again;
 mod curves;
 mod expected;
@@ -14,6 +15,7 @@ mod generated;
 mod interrupt;
 mod job;
 mod joint;
+mod lines;
 mod map;
 mod moments;
 mod object;
@@ -21,6 +23,7 @@ mod options;
 mod parts;
 mod progress;
 mod roughness;
+mod sheet;
 mod source;
 mod summary;
 mod table;
@@ -110,9 +113,9 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
 fn prepare(options: &Options, is_first: bool) -> Result<(Job, Vec<Named>), Failure> {
     options.check()?;
     let job = Job::new(options)?;
-    if options.unload && !job.has_hardness() {
+    if options.unload && !job.has_hardness() && job.law().is_none() {
         return Err(Failure::request(
-            "--unload needs --hardness or --yield: elastic contact goes back through the same states",
+            "--unload needs --hardness, --yield or --work-of-adhesion: elastic contact goes back through the same states",
         ));
     }
     if is_first {
@@ -122,13 +125,19 @@ fn prepare(options: &Options, is_first: bool) -> Result<(Job, Vec<Named>), Failu
         }
     }
     let conductions = options.joint.check(&job.pair())?;
+    if job.law().is_some() {
+        adhesive::check(options, &job, options.joint.is_asked(&conductions))?;
+    }
     Ok((job, conductions))
 }
 
 /// Prints what a path will take.
 fn estimate(options: &Options, of: &str) -> Result<(), Failure> {
     let (job, _) = prepare(options, true)?;
-    let expected = Expected::of(&job, options.unload)?;
+    let expected = match job.law() {
+        Some(_) => adhesive::expected(&job, options.unload)?,
+        None => Expected::of(&job, options.unload)?,
+    };
     match options.json {
         true => answer!("{}", expected.object()),
         false => answer!("{expected}{of}"),
@@ -151,6 +160,9 @@ fn follow_one(
         .map_err(|error| Failure::new(format!("cannot create {}", options.out.display()), error))?;
     if let Some(record) = job.record() {
         outcome::check_place(record)?;
+    }
+    if job.law().is_some() {
+        return adhesive::follow((options, given), &job, interrupt, summary);
     }
     let mut solver = job.solver()?;
     panel::register_font()?;

@@ -12,6 +12,7 @@ use super::fields::Format;
 use super::joint::Joint;
 use super::roughness::Roughness;
 use super::updater::{Updater, no_room};
+use crate::adhesion::Sticking;
 use crate::at::At;
 use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
@@ -32,9 +33,9 @@ fn generated(arg: Arg, value: &str) -> Arg {
 /// Writes path.csv (one line for each state), loading_curve.svg and contact_map.png. Numbers are in SI units, or have a
 /// unit: 5MPa, 1.024mm, 250N, 10%, 60HRC.
 ///
-/// The model is a rigid rough surface with small slopes on an elastic half-space, without friction and adhesion. If
-/// both bodies are elastic, E* contains both. With --layer and --base one body has layers. With --hardness cells yield
-/// at that pressure: it does not harden, and volume is lost. The problem with one pressure for each cell of the grid is
+/// The model is a rigid rough surface with small slopes on an elastic half-space, without friction. If both bodies are
+/// elastic, E* contains both. With --layer and --base one body has layers. With --hardness cells yield at that pressure:
+/// it does not harden, and volume is lost. With --work-of-adhesion the surfaces stick. The problem with one pressure for each cell of the grid is
 /// solved to rounding; on long paths approach_error estimates the remaining error. No solver can restore what the grid
 /// does not resolve: corrected_contact_area removes the excess of whole cells from the area, and the program warns if
 /// contact patches or wavelengths are only a few cells wide.
@@ -70,6 +71,9 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     pub(super) hardness: Hardness,
+
+    #[command(flatten)]
+    pub(super) sticking: Sticking,
 
     /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
     /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the
@@ -111,7 +115,8 @@ pub(crate) struct Options {
     pub(super) fields: Option<Format>,
 
     /// Unload from the last state of a path with a hardness: write unloading.csv, and the surface that is left as
-    /// residual_surface.npy and .x3p
+    /// residual_surface.npy and .x3p. With adhesion: pull off, until no node is pulled any more; path.csv, chart and record
+    /// have both branches
     #[arg(long, help_heading = "Records and files")]
     pub(super) unload: bool,
 
@@ -121,7 +126,7 @@ pub(crate) struct Options {
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless
     /// --record names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "against_surface", "against_turned", "nodes", "seed", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "rows_are_y", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"], help_heading = "Records and files")]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "against_surface", "against_turned", "nodes", "seed", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "rows_are_y", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "work_of_adhesion", "adhesion_range", "cohesive_stress", "periodic", "rule"], help_heading = "Records and files")]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]

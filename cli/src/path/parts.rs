@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use serde_json::{Map, Value, json};
 
 use super::updater::Updater;
+use crate::adhesion::Law;
 use crate::elasticity::Bodies;
 use crate::settings::Settings;
 
@@ -39,6 +40,7 @@ pub(super) struct Parts<'a> {
     pub(super) bodies: &'a Bodies,
     pub(super) periodic: Option<Periodic>,
     pub(super) hardness: Option<&'a DMatrix<f64>>,
+    pub(super) law: Option<Law>,
     pub(super) rule: ContactRule,
     pub(super) updater: Updater,
     pub(super) targets: &'a [ContactTarget],
@@ -74,6 +76,7 @@ impl Parts<'_> {
             ("targets", plain(serde_json::to_value(self.targets))?),
         ];
         let settings = settings.map(|(name, value)| (name.to_string(), value));
-        Ok(Settings::new(Map::from_iter(settings)))
+        let adhesion = self.law.map(|law| ("adhesion".to_string(), law.settings()));
+        Ok(Settings::new(settings.into_iter().chain(adhesion).collect::<Map<_, _>>()))
     }
 }

@@ -31,6 +31,12 @@ impl Progress {
         Self { done: if done.is_finite() { done } else { 0.0 } }
     }
 
+    /// On the way back from `most` nodes in contact to none.
+    pub(super) fn back(nodes: usize, most: usize, cost: impl Fn(usize) -> f64) -> Self {
+        let left = total(nodes as f64, &cost) / total(most as f64, &cost);
+        Self { done: if left.is_finite() { (1.0 - left).max(0.0) } else { 0.0 } }
+    }
+
     /// How long it will still take, in words, after so much time.
     pub(super) fn left(&self, elapsed: Duration) -> String {
         let left = elapsed.as_secs_f64() * (1.0 / self.done.max(1e-6) - 1.0);

@@ -9,6 +9,7 @@ use asperity::loading::History;
 
 use super::Solver;
 use super::job::Job;
+use super::lines::printed;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::say;
@@ -35,9 +36,6 @@ pub(super) fn write(
     let mut lines = "load,approach,mean_gap,contact_area,contact_area_fraction,contact_stiffness,\
                      interfacial_stiffness,elastic_energy\n"
         .to_string();
-    let printed = |stiffness: Option<f64>| {
-        stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
-    };
     for state in states.states().iter().rev() {
         let contact = &state.contact;
         // Writing to a text cannot fail.

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use asperity::record::LoadingRecord;
-use asperity::{ContactRule, LoadingSolver};
+use asperity::record::{AdhesiveRecord, LoadingRecord};
+use asperity::{AdhesionError, ContactRule, Error, LoadingSolver};
 use pyo3::prelude::*;
 
 use super::LoadingPath;
 use super::inner::{Inner, Resume, Updater};
+use crate::adhesion::{Adhesion, AdhesivePath, set_up};
 use crate::choice::choose;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
@@ -35,6 +36,9 @@ const RULES: [(&str, ContactRule); 2] = [
 ///     Greatest number of nodes in contact.
 /// hardness : float or array_like, optional
 ///     Greatest pressure H [Pa]: nodes that reach it yield, perfectly plastically. A map is ``[row, column]``.
+/// adhesion : Adhesion, optional
+///     The surfaces stick: the path is an `AdhesivePath`, with loads below 0 at first, and `unload` pulls them off. Load and
+///     approach at which it ends may be negative. It takes a factor, and no hardness.
 /// updater : {"auto", "cholesky", "iterative"}
 ///     A Cholesky factor while it pays and fits and iterations afterwards, a factor to the end, or iterations from the
 ///     beginning. An updater of your own is written in Rust, by the trait ``LinearUpdater``.
@@ -49,7 +53,7 @@ const RULES: [(&str, ContactRule); 2] = [
 ///
 /// Returns
 /// -------
-/// LoadingPath
+/// LoadingPath or AdhesivePath
 ///     Nothing is computed yet but the half-space.
 ///
 /// Examples
@@ -63,10 +67,10 @@ const RULES: [(&str, ContactRule); 2] = [
 /// >>> path.end, round(path.state.mean_pressure)
 /// ('load', 1000000000)
 #[pyfunction]
-#[pyo3(signature = (surface, half_space, *, load=None, mean_pressure=None, approach=None, area_fraction=None, mean_gap=None, nodes=None, hardness=None, updater="auto", rule="first-contact", window_size=None, memory_budget=None, check=true))]
+#[pyo3(signature = (surface, half_space, *, load=None, mean_pressure=None, approach=None, area_fraction=None, mean_gap=None, nodes=None, hardness=None, adhesion=None, updater="auto", rule="first-contact", window_size=None, memory_budget=None, check=true))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
-fn load_path(
-    py: Python<'_>,
+fn load_path<'py>(
+    py: Python<'py>,
     surface: PyRef<'_, Surface>,
     half_space: PyRef<'_, HalfSpace>,
     load: Option<f64>,
@@ -76,12 +80,13 @@ fn load_path(
     mean_gap: Option<f64>,
     nodes: Option<usize>,
     hardness: Option<&Bound<'_, PyAny>>,
+    adhesion: Option<PyRef<'_, Adhesion>>,
     updater: &str,
     rule: &str,
     window_size: Option<usize>,
     memory_budget: Option<usize>,
     check: bool,
-) -> Fallible<LoadingPath> {
+) -> Fallible<Bound<'py, PyAny>> {
     let topography = surface.topography()?;
     let grid = *surface.grid();
     let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap }.on(&grid)?;
@@ -93,6 +98,34 @@ fn load_path(
     }
     let hardness = hardness.map(|hardness| Hardness::of(hardness, &grid)).transpose()?;
     let kernel = half_space.kernel(py, grid)?;
+    if let Some(adhesion) = adhesion {
+        let refused = [
+            (
+                hardness.is_some(),
+                "adhesion of surfaces that yield is not derived: give hardness or adhesion",
+            ),
+            (
+                nodes.is_some(),
+                "a path with adhesion ends at an area_fraction, and not at a number of nodes",
+            ),
+            (
+                matches!(updater, Updater::Iterative),
+                "a path with adhesion takes a factor: updater=\"auto\" or \"cholesky\"",
+            ),
+            (
+                rule != ContactRule::FirstContact,
+                "a path with adhesion follows events in their exact order: rule=\"first-contact\"",
+            ),
+        ];
+        if let Some((_, reason)) = refused.into_iter().find(|(is, _)| *is) {
+            return Err(Failure::arguments(reason));
+        }
+        let law = adhesion.law();
+        let settings = (targets, window_size, memory_budget);
+        let e_star = half_space.modulus();
+        let path = set_up(py, &surface, (&*kernel, law), settings, (e_star, check))?;
+        return Ok(path.into_pyobject(py)?.into_any());
+    }
     let solver = detached(py, move || {
         let mut builder =
             LoadingSolver::builder(topography, &*kernel).updater(updater.make()).rule(rule);
@@ -116,7 +149,7 @@ fn load_path(
         builder.build()
     })??;
     let inner = Inner::live(solver.into_path(), half_space.elastic_bodies());
-    Ok(LoadingPath::new(inner, half_space.modulus()))
+    Ok(LoadingPath::new(inner, half_space.modulus()).into_pyobject(py)?.into_any())
 }
 
 /// Open the record of a path, to read it, to compute fields of its states, and to go on.
@@ -134,19 +167,33 @@ fn load_path(
 ///
 /// Returns
 /// -------
-/// LoadingPath
-///     With the states of the record in `history`. It goes on when more states are asked for.
+/// LoadingPath or AdhesivePath
+///     With the states of the record in `history`. It goes on when more states are asked for. One with adhesion has its
+///     states in `states`, and goes on with `load_to` and `unload`.
 #[pyfunction]
 #[pyo3(signature = (path, *, half_space=None, updater="auto", memory_budget=None))]
-fn open(
-    py: Python<'_>,
+fn open<'py>(
+    py: Python<'py>,
     path: PathBuf,
     half_space: Option<PyRef<'_, HalfSpace>>,
     updater: &str,
     memory_budget: Option<usize>,
-) -> Fallible<LoadingPath> {
+) -> Fallible<Bound<'py, PyAny>> {
     let updater = choose("updater", updater, &Updater::WORDS)?;
-    let record = detached(py, || LoadingRecord::read_npz(path))??;
+    let record = match detached(py, || LoadingRecord::read_npz(&path))? {
+        Err(Error::Adhesion(AdhesionError::Record { .. })) => {
+            let read = || {
+                let record = AdhesiveRecord::read_npz(&path)?;
+                Ok::<_, Error>((record.path()?, record))
+            };
+            let (path, record) = detached(py, read)??;
+            let body = HalfSpace::of_origin(&record.kernel().origin);
+            let e_star = body.and_then(|body| body.modulus());
+            let path = AdhesivePath::new(path, record.states().clone(), e_star);
+            return Ok(path.into_pyobject(py)?.into_any());
+        }
+        record => record?,
+    };
     let found = HalfSpace::of_origin(&record.kernel().origin);
     let body = match (&half_space, &found) {
         (Some(given), None) => &**given,
@@ -161,7 +208,7 @@ fn open(
     let (kernel, e_star) = (body.kernel(py, record.grid())?, body.modulus());
     let resume = Resume { kernel, updater, memory_budget };
     let inner = detached(py, || Inner::of_record(record, resume))??;
-    Ok(LoadingPath::new(inner, e_star))
+    Ok(LoadingPath::new(inner, e_star).into_pyobject(py)?.into_any())
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

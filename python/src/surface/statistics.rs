@@ -132,7 +132,7 @@ pub(super) fn material_ratio<'py>(
         let curve = MaterialRatio::of(surface.map());
         heights.iter().map(|&height| curve.at_height(height)).collect::<Vec<f64>>()
     })?;
-    Ok(column(py, ratios))
+    Ok(column(py, ratios).into_any())
 }
 
 pub(super) fn fit_self_affine<'py>(

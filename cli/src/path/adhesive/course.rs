@@ -1,0 +1,291 @@
+//! Following both branches, and their files.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use asperity::adhesion::{
+    AdhesiveBranch, AdhesiveEnd, AdhesiveEvent, AdhesivePath, AdhesiveState, Direction,
+};
+use asperity::contact::ContactTarget;
+use asperity::record::AdhesiveRecord;
+use asperity_cli::number::{counted, scientific};
+use asperity_cli::outcome::Failure;
+use indicatif::ProgressBar;
+use nalgebra::DMatrix;
+
+use super::super::follow::bar;
+use super::super::interrupt::Interrupt;
+use super::super::job::Job;
+use super::super::lines::{Lines, STRIDE, printed};
+use super::super::options::Options;
+use super::is_there;
+use crate::at::At;
+
+const HEADER: &str = "step,ix,iy,event,approach,load,contact_area,contact_area_fraction,mean_gap,contact_stiffness,\
+                      interfacial_stiffness,branch,soft_nodes,cohesive_nodes,elastic_energy,adhesive_energy,dissipated,work";
+
+/// A path that has been followed.
+pub(super) struct Followed {
+    pub(super) path: AdhesivePath,
+    /// Of both branches.
+    pub(super) states: Vec<AdhesiveState>,
+    /// States that were asked for, and those that were not reached.
+    pub(super) reached: Vec<(At, AdhesiveState)>,
+    pub(super) missed: Vec<At>,
+    /// Why loading has ended, `None` if it was broken off.
+    pub(super) ended_by: Option<&'static str>,
+}
+
+impl Followed {
+    /// The branches of loading and of unloading.
+    pub(super) fn branches(&self) -> [AdhesiveBranch; 2] {
+        [Direction::Loading, Direction::Unloading].map(|direction| {
+            self.states.iter().filter(|state| state.direction == direction).copied().collect()
+        })
+    }
+
+    /// The last state of loading.
+    pub(super) fn pressed(&self) -> Option<AdhesiveState> {
+        let loading = |state: &&AdhesiveState| state.direction == Direction::Loading;
+        self.states.iter().rev().find(loading).copied()
+    }
+
+    /// Writes the record of both branches, and fields of the last state of loading.
+    pub(super) fn save(
+        &self,
+        name: &Path,
+        fields: &[(&str, DMatrix<f64>)],
+    ) -> Result<PathBuf, Failure> {
+        save(name, &self.path, &self.states, fields)
+    }
+}
+
+fn save(
+    name: &Path,
+    path: &AdhesivePath,
+    states: &[AdhesiveState],
+    fields: &[(&str, DMatrix<f64>)],
+) -> Result<PathBuf, Failure> {
+    let fields: Vec<_> = fields.iter().map(|(name, field)| (*name, field)).collect();
+    AdhesiveRecord::new(path, states.iter().copied().collect())
+        .and_then(|record| record.write_npz(name, &fields))
+        .map(|()| name.to_path_buf())
+        .map_err(|error| Failure::writing(name, error))
+}
+
+/// A path as far as it has come, with its files.
+pub(super) struct Course<'a> {
+    job: &'a Job,
+    followed: Followed,
+    lines: Lines,
+    /// The record, and the states after which it is written.
+    saves: Option<(PathBuf, usize)>,
+    is_done: bool,
+}
+
+impl<'a> Course<'a> {
+    pub(super) fn new(
+        job: &'a Job,
+        path: AdhesivePath,
+        options: &Options,
+    ) -> Result<Self, Failure> {
+        let record = job.record().map(Path::to_path_buf);
+        let begun = job.begun_with_adhesion().map_or(&[][..], |begun| begun.states().states());
+        let mut lines = Lines::create(&options.out, HEADER)?;
+        begun.iter().try_for_each(|state| lines.add(&line(state)))?;
+        Ok(Self {
+            job,
+            followed: Followed {
+                path,
+                states: begun.to_vec(),
+                reached: Vec::new(),
+                missed: job.at().to_vec(),
+                ended_by: None,
+            },
+            lines,
+            saves: record.zip(options.save_every.map(usize::from)),
+            is_done: false,
+        })
+    }
+
+    /// Whether all of it has been followed.
+    pub(super) fn is_done(&self) -> bool {
+        self.is_done
+    }
+
+    /// The path, and its file.
+    pub(super) fn end(self) -> (Followed, Lines) {
+        (self.followed, self.lines)
+    }
+
+    /// Runs the path to its end, and back, or until it is asked to stop, writing each state as it comes.
+    pub(super) fn follow(&mut self, interrupt: &Interrupt, unloads: bool) -> Result<(), Failure> {
+        let bar = bar();
+        interrupt.wait();
+        // A record that was unloading goes on with that.
+        let was_unloading = self
+            .followed
+            .states
+            .last()
+            .is_some_and(|state| state.direction == Direction::Unloading && unloads);
+        let done = match was_unloading {
+            true => Ok(()),
+            false => self.resume().and_then(|()| self.load(interrupt, &bar)),
+        };
+        let done = done.and_then(|()| match unloads && !interrupt.is_asked() {
+            true => self.unload(interrupt, &bar),
+            false => Ok(()),
+        });
+        bar.finish_and_clear();
+        self.is_done = !interrupt.is_asked();
+        done
+    }
+
+    /// Lets a path that has begun go on to where it is to end, unless it is there.
+    fn resume(&mut self) -> Result<(), Failure> {
+        let Some(state) = self.followed.path.state() else { return Ok(()) };
+        let grid = self.job.grid();
+        if self.job.targets().iter().any(|target| is_there(target, &state.contact, &grid)) {
+            return Ok(());
+        }
+        let turned = self.followed.path.load_to_first_of(&self.targets());
+        turned.map_err(|error| Failure::new("cannot go on", error))
+    }
+
+    /// The branch of loading, to each state that is asked for in turn.
+    fn load(&mut self, interrupt: &Interrupt, bar: &ProgressBar) -> Result<(), Failure> {
+        let (job, grid) = (self.job, self.job.grid());
+        let nominal_area = grid.nominal_area();
+        loop {
+            self.branch(interrupt, bar)?;
+            let (Some(state), Some(end)) = (self.followed.path.state(), self.followed.path.end())
+            else {
+                return Ok(());
+            };
+            let mut left = Vec::new();
+            for at in std::mem::take(&mut self.followed.missed) {
+                match is_there(&at.target(nominal_area), &state.contact, &grid) {
+                    true => self.followed.reached.push((at, state)),
+                    false => left.push(at),
+                }
+            }
+            self.followed.missed = left;
+            let mut ends = job.targets().iter();
+            let reached = ends.find(|target| is_there(target, &state.contact, &grid));
+            if let (AdhesiveEnd::Target, None) = (end, reached)
+                && !self.followed.missed.is_empty()
+            {
+                let next = self.targets();
+                let turned = self.followed.path.load_to_first_of(&next);
+                turned.map_err(|error| Failure::new("the path broke off", error))?;
+                continue;
+            }
+            self.followed.ended_by = Some(reached.map_or("no more events", in_words));
+            return Ok(());
+        }
+    }
+
+    /// Where loading has to stop.
+    fn targets(&self) -> Vec<ContactTarget> {
+        let nominal_area = self.job.grid().nominal_area();
+        let missed = self.followed.missed.iter().map(|at| at.target(nominal_area));
+        self.job.targets().iter().copied().chain(missed).collect()
+    }
+
+    fn unload(&mut self, interrupt: &Interrupt, bar: &ProgressBar) -> Result<(), Failure> {
+        let turned = self.followed.path.unload();
+        turned.map_err(|error| Failure::new("cannot unload", error))?;
+        self.branch(interrupt, bar)
+    }
+
+    fn branch(&mut self, interrupt: &Interrupt, bar: &ProgressBar) -> Result<(), Failure> {
+        let start = Instant::now();
+        let most = self.followed.pressed().map_or(1, |state| state.contact.contact_nodes.max(1));
+        while !interrupt.is_asked()
+            && let Some(state) = self.followed.path.next()
+        {
+            let state = state.map_err(|error| Failure::new("the path broke off", error))?;
+            if state.step.is_multiple_of(STRIDE) {
+                let nodes = state.contact.contact_nodes;
+                let progress = match state.direction {
+                    Direction::Loading => self.job.progress(&state.contact),
+                    Direction::Unloading => self.job.progress_back(nodes, most),
+                };
+                bar.set_position((100.0 * progress.done) as u64);
+                let (load, left) =
+                    (scientific(state.contact.load, 3), progress.left(start.elapsed()));
+                bar.set_message(format!("{}, W = {load} N{left}", counted(nodes, "node")));
+            }
+            self.add(state)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, state: AdhesiveState) -> Result<(), Failure> {
+        self.followed.states.push(state);
+        self.lines.add(&line(&state))?;
+        match &self.saves {
+            Some((name, every)) if self.followed.states.len().is_multiple_of(*every) => {
+                self.followed.save(name, &[]).map(|_| ())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A state in the file. `{:e}` prints the shortest digits that read back as the same number.
+fn line(state: &AdhesiveState) -> String {
+    let (contact, (ix, iy)) = (&state.contact, state.node);
+    format!(
+        "{},{ix},{iy},{},{:e},{:e},{:e},{:e},{:e},{},{},{},{},{},{:e},{:e},{:e},{:e}",
+        state.step,
+        event(state.event),
+        contact.approach,
+        contact.load,
+        contact.contact_area,
+        contact.contact_area_fraction,
+        contact.mean_gap,
+        printed(contact.contact_stiffness),
+        printed(contact.interfacial_stiffness),
+        branch(state.direction),
+        state.soft_nodes,
+        state.cohesive_nodes,
+        contact.energy,
+        state.adhesive_energy,
+        state.dissipated,
+        state.work,
+    )
+}
+
+/// The name of a branch in files and tables.
+pub(super) fn branch(direction: Direction) -> &'static str {
+    match direction {
+        Direction::Loading => "loading",
+        Direction::Unloading => "unloading",
+    }
+}
+
+/// The name of an event in the file.
+fn event(event: AdhesiveEvent) -> &'static str {
+    match event {
+        AdhesiveEvent::Near => "near",
+        AdhesiveEvent::Pull => "pull",
+        AdhesiveEvent::Touch => "touch",
+        AdhesiveEvent::Part => "part",
+        AdhesiveEvent::Soften => "soften",
+        AdhesiveEvent::Far => "far",
+        AdhesiveEvent::JumpStart => "jump_start",
+        AdhesiveEvent::JumpEnd => "jump_end",
+        _ => "limit",
+    }
+}
+
+/// Why a path has ended.
+fn in_words(target: &ContactTarget) -> &'static str {
+    match target {
+        ContactTarget::Approach(_) => "the requested approach",
+        ContactTarget::MeanGap(_) => "the requested mean gap",
+        ContactTarget::AreaFraction(_) => "the requested contact area",
+        _ => "the requested load",
+    }
+}

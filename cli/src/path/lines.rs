@@ -1,0 +1,72 @@
+//! A table that is written line by line, as a path is followed.
+
+use std::fs::{self, File};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use asperity_cli::outcome::Failure;
+
+/// Lines between two visits to the disk.
+pub(super) const STRIDE: usize = 64;
+
+/// A file of lines. While it is written its name ends with `.part`, and what it holds are whole lines.
+pub(super) struct Lines {
+    name: PathBuf,
+    part: PathBuf,
+    output: File,
+    /// Lines that are not in the file yet, and their number.
+    text: String,
+    waiting: usize,
+}
+
+impl Lines {
+    /// Begins the file `path.csv` in a directory, in place of one that may be there from another path.
+    pub(super) fn create(directory: &Path, header: &str) -> Result<Self, Failure> {
+        let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
+        let begin = || {
+            match fs::remove_file(&name) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+            File::create(&part)
+        };
+        let output = begin().map_err(|error| Failure::writing(&part, error))?;
+        Ok(Self { name, part, output, text: format!("{header}\n"), waiting: 0 })
+    }
+
+    /// The name while it is written.
+    pub(super) fn part(&self) -> &Path {
+        &self.part
+    }
+
+    /// Adds a line.
+    pub(super) fn add(&mut self, line: &str) -> Result<(), Failure> {
+        self.text += line;
+        self.text.push('\n');
+        self.waiting += 1;
+        if self.waiting == STRIDE {
+            self.flush().map_err(|error| Failure::writing(&self.part, error))?;
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.output.write_all(self.text.as_bytes())?;
+        self.text.clear();
+        self.waiting = 0;
+        Ok(())
+    }
+
+    /// Ends the file, and gives it its name.
+    pub(super) fn finish(mut self) -> Result<PathBuf, Failure> {
+        self.flush()
+            .and_then(|()| fs::rename(&self.part, &self.name))
+            .map_err(|error| Failure::writing(&self.part, error))?;
+        Ok(self.name)
+    }
+}
+
+/// A number, or nothing where there is none: the stiffness of a contact on a periodic half-space.
+pub(super) fn printed(number: Option<f64>) -> String {
+    number.map_or_else(String::new, |number| format!("{number:e}"))
+}

@@ -1,0 +1,269 @@
+//! Paths of surfaces that stick.
+
+mod common;
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+use asperity::adhesion::{AdhesiveEvent, AdhesiveState, Direction};
+use asperity::record::AdhesiveRecord;
+use common::{Scratch, is_refused, output, run, said};
+use serde_json::Value;
+
+type Done = Result<(), Box<dyn Error>>;
+
+/// A soft surface of 0.1 mm.
+const SOFT: &str =
+    "path --nodes 32 --side 100um --rolloff 50um --short-cutoff 25um --sq 2um --e-star 1MPa";
+const STICKS: &str = "--work-of-adhesion 50mJ/m²";
+
+/// The only line of stdout, as JSON.
+fn answer(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
+    Ok(serde_json::from_slice(&run(folder, &format!("{line} --json"))?.stdout)?)
+}
+
+fn number(object: &Value, name: &str) -> f64 {
+    object[name].as_f64().unwrap_or(f64::NAN)
+}
+
+/// The cells of a file by column.
+struct Table(Vec<Vec<String>>);
+
+impl Table {
+    fn read(file: &Path) -> std::io::Result<Self> {
+        let text = fs::read_to_string(file)?;
+        Ok(Self(text.lines().map(|l| l.split(',').map(str::to_string).collect()).collect()))
+    }
+
+    fn words(&self, name: &str) -> Result<Vec<&str>, Box<dyn Error>> {
+        let place = self.0[0].iter().position(|other| other == name);
+        let place = place.ok_or_else(|| format!("no column {name}"))?;
+        Ok(self.0[1..].iter().map(|line| line[place].as_str()).collect())
+    }
+
+    fn numbers(&self, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
+        Ok(self.words(name)?.iter().map(|word| word.parse()).collect::<Result<_, _>>()?)
+    }
+}
+
+/// A row of the file holds the numbers of the record, of which the library's tests say that they are right; the answer
+/// for programs is read off them.
+#[test]
+fn files_have_both_branches() -> Done {
+    let folder = Scratch::new("adhesion_both")?;
+    let line = format!("{SOFT} {STICKS} --mean-pressure 100 --unload --record both.npz");
+    let object = answer(&folder.0, &line)?;
+    let table = Table::read(&folder.join("out/path.csv"))?;
+    let record = AdhesiveRecord::read_npz(folder.join("both.npz"))?;
+    let states = record.states().states();
+    type Column = (&'static str, fn(&AdhesiveState) -> f64);
+    let columns: [Column; 14] = [
+        ("step", |s| s.step as f64),
+        ("ix", |s| s.node.0 as f64),
+        ("iy", |s| s.node.1 as f64),
+        ("approach", |s| s.contact.approach),
+        ("load", |s| s.contact.load),
+        ("contact_area", |s| s.contact.contact_area),
+        ("contact_area_fraction", |s| s.contact.contact_area_fraction),
+        ("mean_gap", |s| s.contact.mean_gap),
+        ("soft_nodes", |s| s.soft_nodes as f64),
+        ("cohesive_nodes", |s| s.cohesive_nodes as f64),
+        ("elastic_energy", |s| s.contact.energy),
+        ("adhesive_energy", |s| s.adhesive_energy),
+        ("dissipated", |s| s.dissipated),
+        ("work", |s| s.work),
+    ];
+    for (name, get) in columns {
+        let expected: Vec<f64> = states.iter().map(get).collect();
+        assert!(table.numbers(name)? == expected, "{name}");
+    }
+    let branches = table.words("branch")?;
+    let unloading = branches.iter().position(|branch| *branch == "unloading");
+    let unloading = unloading.ok_or("no unloading")?;
+    assert!(branches[unloading..].iter().all(|branch| *branch == "unloading"));
+    assert_eq!(states[unloading].direction, Direction::Unloading);
+    let pull = |states: &[AdhesiveState]| {
+        -states.iter().map(|state| state.contact.load).fold(0.0, f64::min)
+    };
+    let [on, off] = [pull(&states[..unloading]), pull(&states[unloading..])];
+    assert!(0.0 < on && on < off);
+    assert_eq!([number(&object, "pull_in"), number(&object, "pull_off")], [on, off]);
+    // To the very load, and all the way back.
+    let (pressed, last) = (&states[unloading - 1], &states[states.len() - 1]);
+    // 100 Pa on 0.1 mm × 0.1 mm.
+    assert!((number(&object, "load") / 1e-6 - 1.0).abs() < 1e-15);
+    assert_eq!(pressed.event, AdhesiveEvent::Limit);
+    assert_eq!((last.contact.load, last.contact.contact_nodes, last.soft_nodes), (0.0, 0, 0));
+    assert_eq!(number(&object, "loop_energy"), last.dissipated);
+    let jumps = states.iter().filter(|state| state.event == AdhesiveEvent::JumpEnd).count();
+    assert!(jumps > 0 && object["jumps"] == jumps);
+    for name in ["loading_curve.svg", "contact_map.png", "settings.json"] {
+        assert!(folder.join("out").join(name).is_file(), "{name}");
+    }
+    // The record goes on: pressed on again, the state of before.
+    let mut path = record.path()?;
+    path.load_to(asperity::ContactTarget::Load(pressed.contact.load))?;
+    let again = path.run()?;
+    let again = again.states().last().ok_or("no state")?;
+    assert_eq!(again.contact.contact_nodes, pressed.contact.contact_nodes);
+    // Both are at the end of a branch whose loads and approaches are exact to 1e-9 of the greatest.
+    assert!((again.contact.approach / pressed.contact.approach - 1.0).abs() < 1e-9);
+    // Without --unload there is no branch of it.
+    let line = format!("{SOFT} {STICKS} --mean-pressure 100 --out on");
+    let only = answer(&folder.0, &line)?;
+    assert!(only["pull_off"].is_null() && only["loop_energy"].is_null());
+    assert_eq!(number(&only, "pull_in"), on);
+    Ok(())
+}
+
+/// States that are asked for are exact, with maps and fields of their own.
+#[test]
+fn states_are_those_that_are_asked_for() -> Done {
+    let folder = Scratch::new("adhesion_at")?;
+    let line = format!("{SOFT} {STICKS} --mean-pressure 200 --at 50,12%,150 --fields npy");
+    let object = answer(&folder.0, &line)?;
+    let at = object["at"].as_array().ok_or("no states")?;
+    let loads: Vec<f64> = at.iter().map(|state| number(state, "mean_pressure")).collect();
+    // An area that is reached in a jump is that behind it.
+    assert!((number(&at[0], "contact_area_fraction") - 0.12).abs() < 0.02, "{at:?}");
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-14;
+    assert!(near(loads[1], 50.0) && near(loads[2], 150.0), "{loads:?}");
+    for name in ["50Pa", "150Pa", "12%"] {
+        assert!(folder.join(&format!("out/contact_map_{name}.png")).is_file(), "{name}");
+        assert!(folder.join(&format!("out/pressure_{name}.npy")).is_file(), "{name}");
+    }
+    // The load is the sum of the pressures.
+    let pressure = asperity::io::read_npy(folder.join("out/pressure_50Pa.npy"))?;
+    assert!(pressure.min() < 0.0);
+    // Pressures of both signs that are a thousand times the mean, each to 1e-12.
+    assert!((pressure.mean() / 50.0 - 1.0).abs() < 1e-7, "{}", pressure.mean());
+    let missed = format!("{SOFT} {STICKS} --mean-pressure 200 --at 50,90%");
+    let done = output(&folder.0, &missed)?;
+    is_refused(&done, &["the path has no state at 90 %"]);
+    Ok(())
+}
+
+/// A record goes on to another end, and back: what comes out is what comes of one go.
+#[test]
+fn records_go_on() -> Done {
+    let folder = Scratch::new("adhesion_resumed")?;
+    let on = format!("{SOFT} {STICKS} --mean-pressure 50 --record r.npz");
+    run(&folder.0, &on)?;
+    let again = "path --resume r.npz --mean-pressure 100 --unload --out again";
+    let again = answer(&folder.0, again)?;
+    let once = answer(&folder.0, &format!("{SOFT} {STICKS} --mean-pressure 100 --unload"))?;
+    // The state at 50 Pa is one more.
+    assert_eq!(number(&again, "states"), number(&once, "states") + 1.0);
+    // Windows begin elsewhere: rounding.
+    for name in ["pull_in", "pull_off", "loop_energy", "approach", "mean_gap", "work"] {
+        let [found, expected] = [&again, &once].map(|object| number(object, name));
+        assert!((found / expected - 1.0).abs() < 1e-8, "{name}: {found} {expected}");
+    }
+    let rows = Table::read(&folder.join("again/path.csv"))?.words("step")?.len();
+    assert_eq!(AdhesiveRecord::read_npz(folder.join("r.npz"))?.states().states().len(), rows);
+    Ok(())
+}
+
+#[test]
+fn what_does_not_go_with_adhesion_is_refused() -> Done {
+    let folder = Scratch::new("adhesion_refused")?;
+    let small = "path --nodes 16 --work-of-adhesion 0.05";
+    for (options, words) in [
+        ("--hardness 1e9", "is not derived"),
+        ("--yield", "is not derived"),
+        ("--updater iterative", "factor"),
+        ("--rule approximate-order", "order of nodes"),
+        ("--report", "only grows"),
+        ("--conductivity 50,237", "only presses"),
+        ("--fe-table csv", "only presses"),
+        ("--layer steel,6e-4 --base 3e9,0.3", "may open a gap"),
+        ("--adhesion-range 1nm", "It takes cells of"),
+        ("--cohesive-stress 1000GPa", "it takes cells of"),
+        ("--cohesive-stress 1MPa --adhesion-range 1nm", "range of adhesion"),
+        ("--memory-budget 1e5", "budget"),
+    ] {
+        for way in ["", "--dry-run"] {
+            let done = output(&folder.0, &format!("{small} {options} {way}"))?;
+            is_refused(&done, &[words]);
+        }
+    }
+    for options in ["--adhesion-range 1um", "--cohesive-stress 1MPa"] {
+        let done = output(&folder.0, &format!("path --nodes 16 {options}"))?;
+        assert_eq!(done.status.code(), Some(2), "{options}");
+        assert!(said(&done).contains("--work-of-adhesion"), "{}", said(&done));
+    }
+    is_refused(&output(&folder.0, "path --nodes 16 --unload")?, &["--work-of-adhesion"]);
+    // What follows from contact that only grows.
+    let line = format!("{SOFT} {STICKS} --mean-pressure 50 --record r.npz");
+    run(&folder.0, &line)?;
+    for command in [
+        "report r.npz",
+        "patches r.npz",
+        "slip r.npz --friction 0.3 --material steel",
+        "leak r.npz --viscosity 1e-3 --pressure-drop 1e5 --along x",
+        "stress r.npz",
+        "creep r.npz --prony 1,0.5 --load 1 --time 1e3",
+    ] {
+        is_refused(&output(&folder.0, command)?, &["with adhesion", "only grows"]);
+    }
+    Ok(())
+}
+
+/// The range of the cells is 0.62 µm at 64 nodes a side and 0.88 µm at 32, where k C(0,0) is 0.45.
+#[test]
+fn what_the_cells_do_not_resolve_is_said() -> Done {
+    let folder = Scratch::new("adhesion_warned")?;
+    let warns = |options: &str, words: &str| -> Result<bool, Box<dyn Error>> {
+        let line = format!("{SOFT} {STICKS} --mean-pressure 50 {options}");
+        let object = answer(&folder.0, &line)?;
+        let warnings = object["warnings"].as_array().ok_or("no warnings")?.clone();
+        Ok(warnings.iter().any(|text| text.as_str().is_some_and(|text| text.contains(words))))
+    };
+    assert!(!warns("", "snap one by one")?);
+    // (0.88/0.76)² · 0.45 = 0.6
+    assert!(warns("--adhesion-range 0.76um", "snap one by one")?);
+    assert!(warns("", "the highest summit")?);
+    // One wave of 0.1 mm in each direction, 0.5 µm high.
+    let smooth = "path --nodes 32 --side 100um --rolloff 100um --short-cutoff 100um --sq 0.5um --e-star 1MPa";
+    let object = answer(&folder.0, &format!("{smooth} {STICKS} --mean-pressure 50"))?;
+    assert_eq!(object["warnings"], Value::Array(Vec::new()));
+    let object = answer(&folder.0, &format!("{SOFT} {STICKS} --mean-pressure 50"))?;
+    assert!((number(&object["law"], "resolution") - 0.45).abs() < 1e-12);
+    let maugis = format!("{SOFT} {STICKS} --cohesive-stress 50kPa --mean-pressure 50");
+    let law = &answer(&folder.0, &maugis)?["law"];
+    assert!((number(law, "stress") / 50e3 - 1.0).abs() < 1e-12 && number(law, "flat_range") > 0.0);
+    Ok(())
+}
+
+/// Both branches take longer than one, and than without adhesion; the contact of an area is known.
+#[test]
+fn what_it_takes_is_estimated() -> Done {
+    let folder = Scratch::new("adhesion_dry_run")?;
+    let dry = format!("{SOFT} --max-area-fraction 0.25 --dry-run");
+    let elastic = answer(&folder.0, &dry)?;
+    let on = answer(&folder.0, &format!("{dry} {STICKS}"))?;
+    let both = answer(&folder.0, &format!("{dry} {STICKS} --unload"))?;
+    assert_eq!(number(&both, "contact_nodes"), 256.0);
+    let seconds = [&elastic, &on, &both].map(|object| number(object, "seconds"));
+    assert!(seconds[0] < seconds[1] && seconds[1] < seconds[2], "{seconds:?}");
+    assert!(number(&on, "bytes") > number(&elastic, "bytes"));
+    assert!(!folder.join("out").exists());
+    Ok(())
+}
+
+/// A path of `--seeds` is that of its seed alone, and the force of each surface is printed.
+#[test]
+fn many_surfaces_are_pulled_off() -> Done {
+    let folder = Scratch::new("adhesion_seeds")?;
+    let line = format!("{SOFT} {STICKS} --mean-pressure 50 --unload");
+    let done = run(&folder.0, &format!("{line} --seeds 1..2 --out runs"))?;
+    let printed = String::from_utf8(done.stdout)?;
+    assert!(printed.contains("pull-off") && printed.contains("loop"), "{printed}");
+    run(&folder.0, &format!("{line} --seed 2 --out alone"))?;
+    let [one, other] =
+        ["runs/seed_2", "alone"].map(|of| fs::read(folder.join(of).join("path.csv")));
+    assert!(one? == other?);
+    is_refused(&output(&folder.0, "gather runs")?, &["with adhesion"]);
+    Ok(())
+}

@@ -1,0 +1,264 @@
+//! Surfaces that stick: walks with loops within loops.
+
+use asperity::adhesion::{
+    Adhesion, AdhesiveEnd, AdhesiveEvent, AdhesiveFields, AdhesivePath, AdhesiveState, NodeState,
+};
+use asperity::{ContactTarget, Error, KernelTable};
+use asperity_testing::equilibria::Equilibria;
+use nalgebra::DVector;
+
+use crate::draw::Draw;
+use crate::kernels::Class;
+use crate::problem::Sample;
+use crate::verdict::{Tally, Verdict, Violation, ensure};
+
+/// Cells up to so many times as long as wide; with longer ones matrices of neighbours are nearly singular.
+const LONGEST: f64 = 10.0;
+/// Nodes of which all states are tried: 4⁸ of them.
+const TRIED: usize = 8;
+/// Gaps relative to the range and the greatest length, pressures relative to the greatest, and energies relative to
+/// their greatest: rounding of solutions whose condition is 10³ at most, with two digits to spare.
+const GAP: f64 = 1e-9;
+const ENERGY: f64 = 1e-9;
+
+/// Draws a surface on a half-space, a law of adhesion and a walk of approaches. Energies balance and jumps lose at every
+/// state; where the walk turns, pressures and gaps are on the law by dense displacements; on few nodes the state is the
+/// extreme one of all equilibria; and a closed loop restores its state.
+///
+/// # Errors
+///
+/// What is wrong.
+pub fn adhesion(bytes: &[u8]) -> Verdict {
+    let mut draw = Draw::new(bytes);
+    let shape = match draw.whole(0, 3) {
+        0 => (4, 2),
+        1 => (2, 3),
+        2 => (draw.whole(1, 40), 1),
+        _ => (draw.whole(2, 9), draw.whole(2, 9)),
+    };
+    let sample = Sample::half_space(&mut draw, shape, LONGEST)?;
+    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+}
+
+/// A law whose range is of the order of the heights.
+fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Adhesion, Error> {
+    let grid = sample.kernel.grid();
+    let height = sample.surface.peak_to_valley();
+    let height = if height > 0.0 { height } else { grid.dx() };
+    let range = height * draw.decades(-1.0, 0.7);
+    let resolution = draw.between(0.05, 0.75);
+    // Per work, of a triangle of this range.
+    let (one, unit) = (1e-3, 1.0);
+    let compliance = Adhesion::work(one).range(unit).on(&*sample.kernel)?;
+    let compliance = compliance.resolution() / compliance.slope();
+    Ok(match draw.whole(0, 2) {
+        0 => Adhesion::work(0.5 * resolution / compliance * range * range),
+        1 => Adhesion::work(0.5 * resolution / compliance * range * range).range(range),
+        _ => {
+            let flat = draw.between(0.05, 0.8) * range;
+            let stress = resolution / compliance * (range - flat);
+            Adhesion::maugis(0.5 * stress * (flat + range), stress).range(range)
+        }
+    })
+}
+
+fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
+    let grid = sample.kernel.grid();
+    let is_long = grid.cell_aspect() > LONGEST;
+    let set_up = law(draw, sample).and_then(|law| {
+        let builder = AdhesivePath::builder(&sample.surface, &*sample.kernel, law);
+        let size = draw.whole(1, 40);
+        Ok((builder.window_size(size).build()?, KernelTable::new(&*sample.kernel)?))
+    });
+    let (path, table) = match set_up {
+        Ok(made) => made,
+        Err(_) if is_long => return Ok(Tally::refusal()),
+        Err(error) => {
+            return Err(Violation::new(format!("a sensible law was refused: {error}")));
+        }
+    };
+    let range = path.law().range();
+    let deep = sample.surface.peak_to_valley().max(range);
+    // On branches that grow as the approach does: mean planes may go back in a jump.
+    let is_free = sample.class == Class::Free;
+    let may_cycle = sample.class == Class::Spectral && !is_distinct(sample);
+    let mut trial = Trial {
+        exact: Equilibria::of(path.problem(), path.law()),
+        gauge: table.gauge().unwrap_or_default(),
+        path,
+        sample,
+        tally: Tally::default(),
+    };
+    // Within range: where it begins a state is both, out of range and near.
+    let turns: Vec<f64> = (0..5).map(|_| draw.between(-0.97 * range, deep)).collect();
+    match trial.walk(&turns, is_free) {
+        Ok(()) => Ok(trial.tally),
+        // Of long cells the matrix has neighbours that are nearly one. On the spectral half-space a pull may open a gap, and
+        // nodes of one height may take turns without end.
+        Err(Stop::Error(_)) if is_long || may_cycle => Ok(Tally::refusal()),
+        Err(Stop::Error(error)) => Err(Violation::new(format!("the path broke off: {error}"))),
+        Err(Stop::Violation(violation)) => Err(violation),
+    }
+}
+
+/// Whether no two nodes have one height: those that do may take turns.
+fn is_distinct(sample: &Sample) -> bool {
+    let mut heights: Vec<f64> = sample.surface.matrix().iter().copied().collect();
+    heights.sort_by(f64::total_cmp);
+    let least = 1e-6 * sample.surface.peak_to_valley();
+    heights.windows(2).all(|pair| pair[1] - pair[0] > least)
+}
+
+/// Why a walk does not go on.
+enum Stop {
+    Error(Error),
+    Violation(Violation),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Error(error)
+    }
+}
+
+impl From<Violation> for Stop {
+    fn from(violation: Violation) -> Self {
+        Self::Violation(violation)
+    }
+}
+
+struct Trial<'a> {
+    path: AdhesivePath,
+    exact: Equilibria,
+    /// What a unit sum of pressures displaces the mean planes by.
+    gauge: f64,
+    sample: &'a Sample,
+    tally: Tally,
+}
+
+impl Trial<'_> {
+    fn walk(&mut self, turns: &[f64], is_free: bool) -> Result<(), Stop> {
+        let mut levels = turns.to_vec();
+        levels.sort_by(f64::total_cmp);
+        let &[lowest, low, middle, high, highest] = &levels[..] else { return Ok(()) };
+        self.go(lowest)?;
+        self.go(highest)?;
+        let start = self.go(low)?;
+        self.go(high)?;
+        self.go(middle)?;
+        self.go(high)?;
+        let back = self.go(low)?;
+        if let (true, Some(start), Some(back)) = (is_free, start, back)
+            && is_distinct(self.sample)
+        {
+            let left = (&start.gap - &back.gap).amax();
+            let allowed = GAP * self.length();
+            self.tally.close("a gap behind a loop", left, 0.0, allowed)?;
+        }
+        self.path.unload()?;
+        self.follow()?;
+        if self.path.end() == Some(AdhesiveEnd::NoMoreEvents)
+            && let Some(state) = self.path.state()
+        {
+            let nodes = (state.contact.contact_nodes, state.soft_nodes, state.cohesive_nodes);
+            if nodes != (0, 0, 0) || state.contact.load != 0.0 {
+                return Err(Violation::new(format!("pulled off, and yet {state:?}")).into());
+            }
+        }
+        Ok(())
+    }
+
+    fn length(&self) -> f64 {
+        self.path.law().range() + self.sample.surface.peak_to_valley()
+    }
+
+    /// Goes to an approach; fields of the state there, if a branch ends there.
+    fn go(&mut self, to: f64) -> Result<Option<AdhesiveFields>, Stop> {
+        let present = self.path.state().map_or(f64::NEG_INFINITY, |s| s.contact.approach);
+        let target = ContactTarget::Approach(to);
+        let is_loading = to >= present;
+        match is_loading {
+            true => self.path.load_to(target),
+            false => self.path.unload_to(target),
+        }?;
+        self.follow()?;
+        let Some(state) = self.path.state().filter(|state| state.event == AdhesiveEvent::Limit)
+        else {
+            return Ok(None);
+        };
+        let fields = self.path.fields_at(&state)?;
+        self.check(&state, &fields)?;
+        if fields.gap.len() <= TRIED && self.sample.class != Class::Spectral {
+            self.compare(&fields, is_loading)?;
+        }
+        Ok(Some(fields))
+    }
+
+    /// The rest of the branch: what costs nothing to check.
+    fn follow(&mut self) -> Result<(), Stop> {
+        let unit = self.path.law().work() * self.path.grid().nominal_area();
+        let mut dissipated = self.path.state().map_or(0.0, |state| state.dissipated);
+        while let Some(state) = self.path.next().transpose()? {
+            let energies = [state.contact.energy, state.adhesive_energy, state.dissipated];
+            let greatest = energies.iter().fold(unit, |most, energy| most.max(energy.abs()));
+            self.tally.not_negative("loss", state.dissipated - dissipated, ENERGY * greatest)?;
+            dissipated = state.dissipated;
+            let sum = energies.iter().sum();
+            self.tally.close("work", state.work, sum, ENERGY * greatest)?;
+            self.tally.checked += 1;
+        }
+        Ok(())
+    }
+
+    /// A state from its pressures alone.
+    fn check(&mut self, state: &AdhesiveState, fields: &AdhesiveFields) -> Result<(), Violation> {
+        let law = self.path.law();
+        let problem = self.path.problem();
+        let pressure = &fields.pressure;
+        let approach = state.contact.approach + self.gauge * pressure.sum();
+        let greatest = pressure.amax().max(law.stress());
+        let length = self.length() + approach.abs();
+        for (node, kind) in fields.nodes.iter().enumerate() {
+            let displaced = pressure.iter().enumerate().map(|(other, p)| {
+                problem.coefficient(node, other).map_or(f64::NAN, |coefficient| coefficient * p)
+            });
+            let gap = problem.initial_gap()[node] + displaced.sum::<f64>() - approach;
+            self.tally.close("gap", fields.gap[node], gap, GAP * length)?;
+            let allowed = GAP * greatest + law.slope() * GAP * length;
+            match kind {
+                NodeState::Contact => {
+                    self.tally.close("gap in contact", gap, 0.0, GAP * length)?;
+                    self.tally.not_negative("pressure", pressure[node] + law.stress(), allowed)?;
+                }
+                NodeState::Held => {
+                    return Err(Violation::new(format!("node {node} is held outside of a jump")));
+                }
+                _ => {
+                    self.tally.not_negative("gap", gap, GAP * length)?;
+                    self.tally.close("pull", -pressure[node], law.pull(gap), allowed)?;
+                }
+            }
+        }
+        let area = self.path.grid().cell_area();
+        let unit = area * greatest * pressure.len() as f64;
+        self.tally.close("load", state.contact.load, area * pressure.sum(), GAP * unit)
+    }
+
+    /// A state beside all equilibria at its approach.
+    fn compare(&mut self, fields: &AdhesiveFields, is_loading: bool) -> Result<(), Violation> {
+        let kinds = if self.path.law().flat_range() > 0.0 { 4 } else { 3 };
+        let approach = self.exact.approach(fields);
+        let found = DVector::from_column_slice(fields.gap.as_slice());
+        let allowed = GAP * self.length();
+        for gap in self.exact.all(kinds, approach) {
+            let beyond = if is_loading { &gap - &found } else { &found - &gap };
+            ensure!(
+                beyond.max() <= allowed,
+                "there is an equilibrium whose gaps are {:e} beyond those of the branch, at {approach:e}",
+                beyond.max()
+            );
+        }
+        self.tally.checked += 1;
+        Ok(())
+    }
+}

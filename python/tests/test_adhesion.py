@@ -1,0 +1,154 @@
+"""Surfaces that stick: both branches are those of the program, and are pickled, saved and turned around."""
+
+from __future__ import annotations
+
+import pickle
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import asperity as asp
+from asperity import errors
+
+SIDE = 1e-4
+SOFT = asp.HalfSpace(1e6, boundary="free")
+STICKY = asp.Adhesion(0.05)
+
+
+@pytest.fixture(scope="module")
+def surface() -> asp.Surface:
+    return asp.self_affine(
+        (32, 32), SIDE, hurst=0.8, rolloff=SIDE / 2, short_cutoff=SIDE / 4, rms_height=2e-6, seed=1
+    )
+
+
+def pressed(surface: asp.Surface, **more: float) -> asp.AdhesivePath:
+    path = asp.load_path(surface, SOFT, adhesion=STICKY, mean_pressure=100.0, check=False, **more)  # type: ignore[call-overload]
+    assert isinstance(path, asp.AdhesivePath)
+    return path
+
+
+def test_both_branches_are_those_of_the_program(surface: asp.Surface, program: Callable[..., str], tmp_path: Path) -> None:
+    np.save(tmp_path / "z.npy", surface.z.T)
+    record = tmp_path / "both.npz"
+    given = ["--surface", tmp_path / "z.npy", "--side", SIDE, "--e-star", 1e6, "--work-of-adhesion", 0.05]
+    program("path", *given, "--mean-pressure", 100, "--unload", "--record", record, "--out", tmp_path / "out")
+    stored = np.load(record)
+    path = pressed(surface)
+    loading = path.run()
+    pressure, gap = path.pressure(), path.gap()
+    unloading = path.unload()
+    columns = path.states.columns()
+    assert len(path.states) == len(loading) + len(unloading) == len(stored["load"])
+    names = {"ix": "column", "iy": "row", "contact_area_fraction": "area_fraction", "energy": "elastic_energy"}
+    for name in (
+        *("step", "ix", "iy", "contact_nodes", "soft_nodes", "cohesive_nodes", "approach", "load", "contact_area"),
+        *("contact_area_fraction", "mean_gap", "contact_stiffness", "interfacial_stiffness", "energy"),
+        *("adhesive_energy", "dissipated", "work"),
+    ):
+        np.testing.assert_array_equal(columns[names.get(name, name)], stored[name], err_msg=name)
+    events = np.array(["near", "pull", "touch", "part", "soften", "far", "jump_start", "jump_end", "limit"])
+    np.testing.assert_array_equal(columns["event"], events[stored["event"]])
+    np.testing.assert_array_equal(columns["branch"] == "unloading", stored["branch"] == 1)
+    np.testing.assert_array_equal(pressure, stored["pressure"].T)
+    np.testing.assert_array_equal(gap, stored["gap"].T)
+    # What was written here is what was written there.
+    path.save(tmp_path / "again.npz")
+    again = np.load(tmp_path / "again.npz")
+    for name in set(again.files) - {"parameters"}:
+        np.testing.assert_array_equal(again[name], stored[name], err_msg=name)
+    opened = asp.open(record)
+    assert opened.states == path.states and opened.e_star == path.e_star == 1e6
+
+
+def test_forces_and_loops(surface: asp.Surface) -> None:
+    path = pressed(surface)
+    assert path.state is None and path.end is None and path.shape == (32, 32) and path.size == (SIDE, SIDE)
+    first = next(path)
+    assert (first.event, first.branch, first.load) == ("near", "loading", 0.0)
+    loading = path.run()
+    peak = path.state
+    assert peak is not None and path.end == "target"
+    assert peak.mean_pressure == pytest.approx(100.0, rel=1e-14)
+    assert peak.work == pytest.approx(peak.elastic_energy + peak.adhesive_energy + peak.dissipated, rel=1e-9)
+    assert path.contact_map().sum() == peak.contact_nodes
+    assert path.pulled_map().sum() == peak.soft_nodes + peak.cohesive_nodes
+    assert (path.pressure()[path.contact_map()] < 0).any()
+    # A loop within the path restores its state.
+    back = path.unload(load=-1e-6)
+    assert back[-1].load == pytest.approx(-1e-6, rel=1e-12) and back[-1].branch == "unloading"
+    again = path.load_to(load=peak.load)[-1]
+    assert again.contact_nodes == peak.contact_nodes and again.approach == pytest.approx(peak.approach, rel=1e-9)
+    off = path.unload()
+    assert off.pull_off == -off.load.min() > loading.pull_off > 0
+    assert off[-1].load == 0 == off[-1].contact_nodes and off.jumps > 0 and off.energy_lost > 0
+    assert path.states[-1].dissipated == pytest.approx(path.states.energy_lost)
+    at = off.approach_at(-0.5 * off.pull_off)
+    assert at is not None and off.load_at(at) == pytest.approx(-0.5 * off.pull_off, rel=1e-12)
+    assert off.load_at(1.0) is None
+    with pytest.raises(IndexError):
+        off[len(off)]
+
+
+def test_pickles_and_records(surface: asp.Surface, tmp_path: Path) -> None:
+    path = pressed(surface)
+    branch = path.run()
+    for one in (branch, branch[-1], branch[0], STICKY, asp.Adhesion(1.0, adhesion_range=2.0, cohesive_stress=0.7)):
+        again = pickle.loads(pickle.dumps(one))
+        assert again == one and repr(again) == repr(one)
+    path.save(tmp_path / "on.npz")
+    opened = asp.open(tmp_path / "on.npz")
+    np.testing.assert_array_equal(opened.pressure(), path.pressure())
+    state = branch[len(branch) // 2]
+    np.testing.assert_array_equal(opened.gap(state), path.gap(state))
+    # To rounding: windows begin elsewhere.
+    one, other = opened.unload(), path.unload()
+    assert one.pull_off == pytest.approx(other.pull_off, rel=1e-10) and len(one) == len(other)
+
+
+def test_what_is_refused(surface: asp.Surface, tmp_path: Path) -> None:
+    refused: list[tuple[dict[str, object], str]] = [
+        ({"hardness": 1e9}, "not derived"),
+        ({"updater": "iterative"}, "factor"),
+        ({"rule": "approximate-order"}, "exact order"),
+        ({"nodes": 5}, "area_fraction"),
+    ]
+    for arguments, words in refused:
+        with pytest.raises(errors.AsperityError, match=words):
+            asp.load_path(surface, SOFT, adhesion=STICKY, **arguments)  # type: ignore[call-overload]
+    with pytest.raises(errors.AsperityError) as steep:
+        asp.load_path(surface, SOFT, adhesion=asp.Adhesion(0.05, adhesion_range=1e-9))
+    assert steep.value.kind == "AdhesionUnresolved" and steep.value.cell_needed < SIDE / 32
+    with pytest.raises(errors.AsperityError, match="work of adhesion"):
+        asp.load_path(surface, SOFT, adhesion=asp.Adhesion(-1.0))
+    stiff = asp.HalfSpace.layered([("steel", 6e-6)], (3e9, 0.3), "free")
+    with pytest.raises(errors.AsperityError) as unknown:
+        asp.load_path(surface, stiff, adhesion=STICKY, check=False)
+    assert unknown.value.kind == "GrowthUnknown"
+    path = pressed(surface)
+    with pytest.raises(errors.AsperityError, match="no states"):
+        path.pressure()
+    path.run()
+    with pytest.raises(errors.AsperityError) as behind:
+        path.unload(load=1.0)
+    assert behind.value.kind == "Behind" and behind.value.present == path.state.load  # type: ignore[union-attr]
+    for follow in (asp.patches, asp.report):
+        with pytest.raises((TypeError, errors.AsperityError)):
+            follow(path)  # type: ignore[operator]
+    path.save(tmp_path / "r.npz")
+    with pytest.raises(errors.AsperityError):
+        asp.open(tmp_path / "missing.npz")
+
+
+def test_what_the_cells_do_not_resolve_is_said(surface: asp.Surface) -> None:
+    with pytest.warns(errors.AsperityWarning, match="highest summit"):
+        path = asp.load_path(surface, SOFT, adhesion=STICKY, mean_pressure=100.0)
+    assert path.law["resolution"] == pytest.approx(0.45, rel=1e-12)
+    short = asp.Adhesion(0.05, adhesion_range=0.87 * path.law["range"])
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        asp.load_path(surface, SOFT, adhesion=short, mean_pressure=100.0)
+    assert any("snap one by one" in str(warning.message) for warning in said)

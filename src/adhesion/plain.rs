@@ -1,0 +1,169 @@
+//! Without adhesion, w = 0: the states of the elastic path, there and back.
+
+use super::state::{AdhesiveEvent, Direction};
+use crate::contact::{ContactState, ContactTarget};
+use crate::loading::{ContactEvent, History, LoadingEnd, LoadingPath, LoadingState};
+use crate::{Error, Grid};
+
+/// What happens, at which node, and the contact then.
+pub(super) type Happened = (AdhesiveEvent, (usize, usize), ContactState);
+
+/// An elastic path that can turn around: contact goes back through the same states.
+#[derive(Debug)]
+pub(super) struct Plain {
+    path: LoadingPath,
+    /// Touches that the path has come to, in their order.
+    touches: Vec<LoadingState>,
+    /// How many of them are in contact.
+    now: usize,
+    direction: Direction,
+    /// Where the branch ends, once it has turned: before that the path knows.
+    targets: Option<Vec<ContactTarget>>,
+    is_at_end: bool,
+}
+
+impl Plain {
+    pub(super) fn new(path: LoadingPath) -> Self {
+        Self {
+            path,
+            touches: Vec::new(),
+            now: 0,
+            direction: Direction::Loading,
+            targets: None,
+            is_at_end: false,
+        }
+    }
+
+    /// Turns around, or goes on, to the first of some targets.
+    pub(super) fn turn(&mut self, direction: Direction, targets: &[ContactTarget]) {
+        self.direction = direction;
+        self.targets = Some(targets.to_vec());
+        self.is_at_end = false;
+    }
+
+    /// Goes to where so many nodes are in contact, of `most` that were before.
+    pub(super) fn skip_to(&mut self, now: usize, most: usize) -> Result<(), Error> {
+        while self.touches.len() < most && self.touch()? {}
+        self.now = now.min(self.touches.len());
+        Ok(())
+    }
+
+    /// The next of what happens on the branch, `None` at its end.
+    pub(super) fn next(&mut self) -> Result<Option<Happened>, Error> {
+        if self.is_at_end {
+            return Ok(None);
+        }
+        match self.direction {
+            Direction::Loading => self.press(),
+            Direction::Unloading => self.release(),
+        }
+    }
+
+    /// Whether the branch has ended at a target.
+    pub(super) fn is_at_target(&self) -> bool {
+        self.is_at_end
+    }
+
+    /// Lets the path come to one touch more, if there is one.
+    fn touch(&mut self) -> Result<bool, Error> {
+        // What it was to end at at first is forgotten.
+        if self.path.end().is_some() && self.touches.len() < self.path.grid().nodes() {
+            self.path.continue_to(ContactTarget::AreaFraction(1.0))?;
+        }
+        while let Some(state) = self.path.next().transpose()? {
+            if state.event == ContactEvent::Touch {
+                self.touches.push(state);
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn press(&mut self) -> Result<Option<Happened>, Error> {
+        if self.targets.is_none() {
+            let Some(state) = self.path.next().transpose()? else {
+                // An area has no state of its own.
+                self.is_at_end = self.path.end() == Some(LoadingEnd::AreaFraction);
+                return Ok(None);
+            };
+            if state.event != ContactEvent::Touch {
+                self.is_at_end = true;
+                return Ok(Some((AdhesiveEvent::Limit, state.node, state.contact)));
+            }
+            self.touches.push(state);
+        } else if self.now == self.touches.len() && !self.touch()? {
+            return self.end_behind();
+        }
+        let next = self.touches[self.now].contact;
+        if let Some(limit) = self.limit(|target, grid| is_beyond(&next, target, grid, 1.0))? {
+            return Ok(Some(limit));
+        }
+        let state = self.touches[self.now];
+        self.now += 1;
+        Ok(Some((AdhesiveEvent::Touch, state.node, state.contact)))
+    }
+
+    /// Where all touch that can: the first target, if the path comes there.
+    fn end_behind(&mut self) -> Result<Option<Happened>, Error> {
+        let target = self.targets.iter().flatten().next().copied();
+        let Some(target) = target else { return Ok(None) };
+        self.path.continue_to(target)?;
+        let state = self.path.next().transpose()?;
+        self.is_at_end = state.is_some();
+        Ok(state.map(|state| (AdhesiveEvent::Limit, state.node, state.contact)))
+    }
+
+    fn release(&mut self) -> Result<Option<Happened>, Error> {
+        let Some(last) = self.now.checked_sub(1) else { return Ok(None) };
+        let state = self.touches[last];
+        let is_there =
+            |target: &ContactTarget, grid: &Grid| is_beyond(&state.contact, target, grid, -1.0);
+        if let Some(limit) = self.limit(is_there)? {
+            return Ok(Some(limit));
+        }
+        self.now = last;
+        // Its pressure is 0 there: all is as at its touch, but that it does not count, and the stiffnesses are those
+        // without it.
+        let grid = self.path.grid();
+        let ContactState { approach, load, mean_gap, energy, .. } = state.contact;
+        let before = last.checked_sub(1).map(|before| self.touches[before].contact);
+        let contact = ContactState {
+            contact_stiffness: before.map_or(Some(0.0), |before| before.contact_stiffness),
+            interfacial_stiffness: before.map_or(Some(0.0), |before| before.interfacial_stiffness),
+            energy,
+            ..ContactState::new(&grid, last, approach, load, mean_gap)
+        };
+        Ok(Some((AdhesiveEvent::Part, state.node, contact)))
+    }
+
+    /// The state of the first target for which that holds, with which the branch ends.
+    fn limit(
+        &mut self,
+        holds: impl Fn(&ContactTarget, &Grid) -> bool,
+    ) -> Result<Option<Happened>, Error> {
+        let grid = self.path.grid();
+        let targets = self.targets.iter().flatten();
+        let Some(target) = targets.copied().find(|target| holds(target, &grid)) else {
+            return Ok(None);
+        };
+        self.is_at_end = true;
+        let history: History = self.touches.iter().copied().collect();
+        let state = history.at(target)?;
+        Ok(Some((AdhesiveEvent::Limit, state.node, state.contact)))
+    }
+}
+
+/// Whether a target lies before a state on the way of a branch, 1 or −1.
+fn is_beyond(state: &ContactState, target: &ContactTarget, grid: &Grid, way: f64) -> bool {
+    match *target {
+        ContactTarget::Load(load) => way * (state.load - load) > 0.0,
+        ContactTarget::MeanPressure(p) => way * (state.load - p * grid.nominal_area()) > 0.0,
+        ContactTarget::Approach(approach) => way * (state.approach - approach) > 0.0,
+        ContactTarget::MeanGap(gap) => way * (gap - state.mean_gap) > 0.0,
+        ContactTarget::AreaFraction(fraction) => grid.nodes_in(fraction).is_ok_and(|nodes| {
+            let (nodes, contact) = (nodes as f64, state.contact_nodes as f64);
+            // Of the last node that leaves there is to be nothing.
+            if way > 0.0 { contact > nodes } else { contact <= nodes }
+        }),
+    }
+}

@@ -1,0 +1,168 @@
+//! Records of paths with adhesion.
+
+#[cfg(feature = "io")]
+mod npz;
+
+use nalgebra::DMatrix;
+
+use super::KernelRecord;
+use crate::adhesion::{Adhesion, AdhesiveBranch, AdhesivePath, AdhesiveState, Trace};
+use crate::surface::HeightMap;
+use crate::{Error, Grid};
+
+/// How far numbers that follow from others may be from them, relative to the greatest of these.
+const SAME: f64 = 1e-9;
+
+/// The record of a path with adhesion, all its branches in one: the surface, the kernel, the law, the states, and what
+/// happened to nodes.
+///
+/// ```
+/// use asperity::adhesion::{Adhesion, AdhesivePath};
+/// use asperity::record::AdhesiveRecord;
+/// use asperity::{Boussinesq, ContactTarget, Grid, SelfAffine};
+///
+/// # fn main() -> Result<(), asperity::Error> {
+/// let half_space = Boussinesq::new(Grid::square(16, 1e-3)?, 1e6)?;
+/// let surface = SelfAffine::zhang2020(1);
+/// let mut path = AdhesivePath::builder(&surface, &half_space, Adhesion::work(0.05))
+///     .until(ContactTarget::Load(0.01))
+///     .build()?;
+/// let loading = path.run()?;
+/// let record = AdhesiveRecord::new(&path, loading)?;
+///
+/// // Unloading, elsewhere:
+/// let mut path = record.path()?;
+/// path.unload()?;
+/// assert!(path.run()?.pull_off() > 0.0);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct AdhesiveRecord {
+    grid: Grid,
+    /// Heights from the highest node.
+    heights: HeightMap,
+    kernel: KernelRecord,
+    adhesion: Adhesion,
+    states: AdhesiveBranch,
+    trace: Trace,
+}
+
+impl AdhesiveRecord {
+    /// The record of a path and of all states that it has yielded, on all its branches.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StateNotReached`] for other states than these.
+    pub fn new(path: &AdhesivePath, states: AdhesiveBranch) -> Result<Self, Error> {
+        let present = path.state().map_or(0, |state| state.step);
+        let steps = states.states().iter().map(|state| state.step);
+        if states.states().len() != present || !steps.eq(1..=present) {
+            let step = states.states().last().map_or(0, |state| state.step);
+            return Err(Error::StateNotReached { step, present });
+        }
+        let problem = path.problem();
+        let (nx, ny) = problem.grid().shape();
+        let heights = problem.initial_gap().iter().map(|gap| -gap);
+        Self {
+            grid: problem.grid(),
+            heights: HeightMap::new(DMatrix::from_iterator(nx, ny, heights))?,
+            kernel: KernelRecord::of(problem.table()),
+            adhesion: path.adhesion(),
+            trace: path.trace(),
+            states,
+        }
+        .checked()
+    }
+
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`], [`Error::Inconsistent`], and those of [`Trace::follow`].
+    fn checked(self) -> Result<Self, Error> {
+        self.grid.check_shape(self.heights.shape())?;
+        let states = self.states.states();
+        if states.len() != self.trace.marks.len() {
+            let (expected, found) = (self.trace.marks.len(), states.len());
+            return Err(Error::LengthMismatch { expected, found });
+        }
+        self.trace.follow(self.grid.nodes(), |place, counts| check(&states[place], counts))?;
+        Ok(self)
+    }
+
+    /// The grid.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Heights of the surface from its highest node \[m\]: none is positive.
+    #[must_use]
+    pub fn heights(&self) -> &HeightMap {
+        &self.heights
+    }
+
+    /// The parameters of the kernel.
+    #[must_use]
+    pub fn kernel(&self) -> &KernelRecord {
+        &self.kernel
+    }
+
+    /// The law of adhesion that was asked for.
+    #[must_use]
+    pub fn adhesion(&self) -> Adhesion {
+        self.adhesion
+    }
+
+    /// The states of all branches, in their order.
+    #[must_use]
+    pub fn states(&self) -> &AdhesiveBranch {
+        &self.states
+    }
+
+    /// The path at its last state, where it has ended: to turn around, to go on
+    /// ([`load_to`](AdhesivePath::load_to), [`unload`](AdhesivePath::unload)), and for
+    /// [fields](AdhesivePath::fields_at) of its states.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`LoadingRecord::make_kernel`](super::LoadingRecord::make_kernel) and of
+    /// [`AdhesiveBuilder::build`](crate::adhesion::AdhesiveBuilder::build); [`Error::Inconsistent`] if the nodes do not
+    /// carry the load of the last state.
+    pub fn path(&self) -> Result<AdhesivePath, Error> {
+        let kernel = self.kernel.make(self.grid)?;
+        let mut path = AdhesivePath::builder(&self.heights, &kernel, self.adhesion).build()?;
+        if let Some(last) = self.states.states().last() {
+            path.restore(self.trace.clone(), *last)?;
+        }
+        Ok(path)
+    }
+}
+
+/// `Ok` if what a state says of its nodes and of its energies is so.
+fn check(state: &AdhesiveState, [soft, cohesive, in_contact]: [usize; 3]) -> Result<(), Error> {
+    let contact = &state.contact;
+    let energies = [contact.energy, state.adhesive_energy, state.dissipated, state.work];
+    if !contact.is_finite() || energies.iter().any(|energy| !energy.is_finite()) {
+        return Err(Error::NotFinite { step: state.step });
+    }
+    let wrong = |quantity, value, expected, reason| {
+        Err(Error::Inconsistent { step: state.step, quantity, value, expected, reason })
+    };
+    let counts = [
+        ("number of soft nodes", state.soft_nodes, soft),
+        ("number of cohesive nodes", state.cohesive_nodes, cohesive),
+        ("number of nodes in contact", contact.contact_nodes, in_contact),
+    ];
+    for (quantity, value, expected) in counts {
+        if value != expected {
+            return wrong(quantity, value as f64, expected as f64, "of them are");
+        }
+    }
+    let [elastic, adhesive, dissipated, work] = energies;
+    let unit = energies.iter().fold(0.0, |most: f64, energy| most.max(energy.abs()));
+    let sum = elastic + adhesive + dissipated;
+    if (work - sum).abs() > SAME * unit {
+        return wrong("work", work, sum, "is the sum of the energies");
+    }
+    Ok(())
+}

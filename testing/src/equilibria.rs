@@ -1,0 +1,86 @@
+//! All equilibria of a few nodes that stick, found by trying every state of every node.
+
+use asperity::Problem;
+use asperity::adhesion::{AdhesiveFields, CohesiveLaw};
+use nalgebra::{DMatrix, DVector};
+
+/// A surface of a few nodes that sticks: influence, initial gaps and law.
+#[derive(Debug)]
+pub struct Equilibria {
+    matrix: DMatrix<f64>,
+    gap: DVector<f64>,
+    law: CohesiveLaw,
+}
+
+const OPEN: usize = 0;
+const SOFT: usize = 1;
+const CONTACT: usize = 2;
+const COHESIVE: usize = 3;
+
+impl Equilibria {
+    /// Of a problem with a law.
+    #[must_use]
+    pub fn of(problem: &Problem, law: CohesiveLaw) -> Self {
+        let nodes = problem.initial_gap().len();
+        Self {
+            matrix: DMatrix::from_fn(nodes, nodes, |i, j| problem.coefficient(i, j).unwrap()),
+            gap: DVector::from_column_slice(problem.initial_gap()),
+            law,
+        }
+    }
+
+    /// The approach of a state in the gauge of the kernel.
+    #[must_use]
+    pub fn approach(&self, fields: &AdhesiveFields) -> f64 {
+        let pressure = DVector::from_column_slice(fields.pressure.as_slice());
+        (&self.gap + &self.matrix * pressure)[0] - fields.gap[0]
+    }
+
+    /// Gaps of the state with nodes so, if that is a strict minimum of the energy.
+    fn equilibrium(&self, nodes: &[usize], approach: f64) -> Option<DVector<f64>> {
+        let law = &self.law;
+        let size = nodes.len();
+        let free: Vec<usize> = (0..size).filter(|&i| matches!(nodes[i], SOFT | CONTACT)).collect();
+        let mut pressure =
+            DVector::from_fn(size, |i, _| if nodes[i] == COHESIVE { -law.stress() } else { 0.0 });
+        let base = &self.gap + &self.matrix * &pressure;
+        let shift = |i: usize| if nodes[i] == SOFT { 1.0 / law.slope() } else { 0.0 };
+        let reduced = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            self.matrix[(free[i], free[j])] - if i == j { shift(free[i]) } else { 0.0 }
+        });
+        let right = DVector::from_fn(free.len(), |i, _| {
+            let range = if nodes[free[i]] == SOFT { law.range() } else { 0.0 };
+            range + approach - base[free[i]]
+        });
+        let solved =
+            if free.is_empty() { right.clone() } else { reduced.clone().lu().solve(&right)? };
+        free.iter().zip(solved.iter()).for_each(|(&i, &p)| pressure[i] = p);
+        let gap = &self.gap + &self.matrix * &pressure - DVector::from_element(size, approach);
+        let is_on_law = (0..size).all(|i| match nodes[i] {
+            OPEN => gap[i] > law.range(),
+            SOFT => gap[i] < law.range() && gap[i] > law.flat_range(),
+            COHESIVE => gap[i] < law.flat_range() && gap[i] > 0.0,
+            _ => pressure[i] > -law.stress(),
+        });
+        let soft = nodes.iter().filter(|&&node| node == SOFT).count();
+        let is_stable = || {
+            let values = match free.len() {
+                0 => Vec::new(),
+                1 => vec![reduced[(0, 0)]],
+                _ => reduced.clone().symmetric_eigenvalues().as_slice().to_vec(),
+            };
+            values.iter().filter(|&&value| value < 0.0).count() == soft
+        };
+        (is_on_law && is_stable()).then_some(gap)
+    }
+
+    /// Gaps of all strict minima of the energy at an approach in the gauge of the kernel, of 3 kinds of nodes, or 4 where
+    /// the law has a flat part.
+    #[must_use]
+    pub fn all(&self, kinds: usize, approach: f64) -> Vec<DVector<f64>> {
+        let size = self.gap.len() as u32;
+        let states = (0..kinds.pow(size))
+            .map(|code| (0..size).map(|i| code / kinds.pow(i) % kinds).collect::<Vec<usize>>());
+        states.filter_map(|nodes| self.equilibrium(&nodes, approach)).collect()
+    }
+}

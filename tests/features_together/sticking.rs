@@ -1,0 +1,163 @@
+//! The row with adhesion: a path of another type, so that it has checks of its own.
+
+use std::path::PathBuf;
+
+use asperity::adhesion::{Adhesion, AdhesiveBranch, AdhesivePath, AdhesiveState, NodeState};
+use asperity::record::{AdhesiveRecord, LoadingRecord};
+use asperity::{Boussinesq, ContactTarget, Error, Grid};
+use asperity_testing::dense::{influence_matrix, initial_gap};
+use asperity_testing::surfaces::self_affine;
+use nalgebra::DVector;
+
+use super::rows::E_STAR;
+
+/// Its name on the page.
+pub(super) const NAME: &str = "adhesion";
+
+/// Work of adhesion \[J/m²\]: so much that its range is as long as the surface is rough.
+const WORK: f64 = 1000.0;
+const END: f64 = 0.5;
+
+fn path() -> AdhesivePath {
+    let grid = Grid::square(16, 3.2e-4).unwrap();
+    let (surface, half_space) =
+        (self_affine(&grid, 0.8, 1.5e-6, 3), Boussinesq::new(grid, E_STAR).unwrap());
+    let builder = AdhesivePath::builder(&surface, &half_space, Adhesion::work(WORK));
+    builder.until(ContactTarget::AreaFraction(END)).build().unwrap()
+}
+
+/// States of both branches.
+fn pulled_off() -> (AdhesivePath, AdhesiveBranch) {
+    let mut path = path();
+    let mut states = path.run().unwrap();
+    path.unload().unwrap();
+    states.extend(path.run().unwrap().states().iter().copied());
+    (path, states)
+}
+
+/// What the page says of a column.
+pub(super) fn column(name: &str) -> Result<(), Error> {
+    match name {
+        "fields" | "unload" => fields(),
+        "record" => record(),
+        "resume" => resume(),
+        // The others take the record of contact that only grows, or are single loads, which know of no adhesion.
+        _ => refused(),
+    }
+}
+
+/// Pressures and gaps are those of the influence matrix and of the law, and scalars follow from them.
+fn fields() -> Result<(), Error> {
+    let (path, states) = pulled_off();
+    let law = path.law();
+    let grid = path.grid();
+    let half_space = Boussinesq::new(grid, E_STAR)?;
+    let matrix = influence_matrix(&half_space);
+    let surface = self_affine(&grid, 0.8, 1.5e-6, 3);
+    let initial = initial_gap(surface.matrix());
+    let (mut soft, mut pressed) = (0, 0);
+    for state in states.states().iter().step_by(states.states().len() / 12) {
+        let fields = path.fields_at(state)?;
+        let pressure = DVector::from_column_slice(fields.pressure.as_slice());
+        let displacement = &matrix * &pressure;
+        for (node, kind) in fields.nodes.iter().enumerate() {
+            let gap = initial[node] + displacement[node] - state.contact.approach;
+            // Two solutions whose condition is some 10³, of displacements about as long as the range.
+            let rounding = 1e-10 * (law.range() + state.contact.approach.abs());
+            assert!((gap - fields.gap[node]).abs() < rounding, "{gap} {}", fields.gap[node]);
+            if *kind == NodeState::Contact {
+                assert!(pressure[node] > -law.stress() * (1.0 + 1e-9));
+                pressed += 1;
+            } else {
+                let pull = law.pull(gap);
+                assert!((pressure[node] + pull).abs() < 1e-8 * law.stress(), "{kind:?}");
+                soft += usize::from(*kind == NodeState::Soft);
+            }
+        }
+        let unit = grid.cell_area() * pressure.iter().map(|p| p.abs()).sum::<f64>();
+        let load = grid.cell_area() * pressure.sum();
+        assert!((load - state.contact.load).abs() <= 1e-10 * unit, "{load} {state:?}");
+    }
+    assert!(soft > 20 && pressed > 100, "{soft} {pressed}");
+    // All the way back.
+    let last = states.states().last().unwrap();
+    assert_eq!((last.contact.contact_nodes, last.soft_nodes), (0, 0));
+    assert!(states.dissipated() >= 0.0 && states.pull_off() > 0.0);
+    Ok(())
+}
+
+/// A file of its own for each test.
+fn file(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("asperity-sticking-{name}-{}.npz", std::process::id()))
+}
+
+fn through_a_file(record: &AdhesiveRecord, name: &str) -> AdhesiveRecord {
+    let file = file(name);
+    record.write_npz(&file, &[]).unwrap();
+    let read = AdhesiveRecord::read_npz(&file);
+    std::fs::remove_file(&file).unwrap();
+    read.unwrap()
+}
+
+/// Both branches come back bit for bit, and so do the fields of their states.
+fn record() -> Result<(), Error> {
+    let (path, states) = pulled_off();
+    let record = through_a_file(&AdhesiveRecord::new(&path, states.clone())?, "record");
+    assert_eq!(record.states(), &states);
+    assert_eq!(record.adhesion(), path.adhesion());
+    let again = record.path()?;
+    for state in states.states().iter().step_by(states.states().len() / 5) {
+        assert_eq!(again.fields_at(state)?, path.fields_at(state)?);
+    }
+    Ok(())
+}
+
+/// Interrupted on either branch, within a jump or not, a path goes on to the same events.
+fn resume() -> Result<(), Error> {
+    let (_, states) = pulled_off();
+    let all = states.states();
+    for stop in [1, all.len() / 5, all.len() / 2, 4 * all.len() / 5] {
+        let mut path = path();
+        let is_unloading = all[stop - 1].direction != all[0].direction;
+        let mut so_far: Vec<AdhesiveState> = Vec::new();
+        if is_unloading {
+            so_far.extend(path.run()?.states());
+            path.unload()?;
+        }
+        while so_far.len() < stop {
+            so_far.extend(path.next().transpose()?);
+        }
+        let record = AdhesiveRecord::new(&path, so_far.into_iter().collect())?;
+        let mut path = through_a_file(&record, &format!("resume-{stop}")).path()?;
+        match is_unloading {
+            true => path.unload()?,
+            false => path.load_to(ContactTarget::AreaFraction(END))?,
+        }
+        let mut rest: Vec<AdhesiveState> = path.run()?.states().to_vec();
+        if !is_unloading {
+            path.unload()?;
+            rest.extend(path.run()?.states());
+        }
+        assert_eq!(stop + rest.len(), all.len());
+        // Windows begin elsewhere: rounding, of the greatest load.
+        let unit = states.pull_off() + all.iter().map(|s| s.contact.load).fold(0.0, f64::max);
+        for (found, expected) in rest.iter().zip(&all[stop..]) {
+            assert_eq!((found.step, found.event), (expected.step, expected.event));
+            assert!((found.contact.load - expected.contact.load).abs() < 1e-9 * unit);
+        }
+    }
+    Ok(())
+}
+
+/// What takes a record of contact that only grows refuses this one.
+fn refused() -> Result<(), Error> {
+    let mut path = path();
+    let states = path.run()?;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    let file = file(&format!("refused-{}", NEXT.fetch_add(1, Ordering::Relaxed)));
+    AdhesiveRecord::new(&path, states)?.write_npz(&file, &[])?;
+    let read = LoadingRecord::read_npz(&file);
+    std::fs::remove_file(&file).unwrap();
+    read.map(drop)
+}
