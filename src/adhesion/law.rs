@@ -304,7 +304,7 @@ mod tests {
         };
         assert!(law.on(&half_space(cell_needed * 0.999_999)?)?.flat_range() < 1e-6);
         for (law, quantity) in [
-            (Adhesion::work(0.0), "work of adhesion"),
+            (Adhesion::work(-0.05), "work of adhesion"),
             (Adhesion::work(f64::NAN), "work of adhesion"),
             (Adhesion::work(1.0).range(-1.0), "range of adhesion"),
             (Adhesion::maugis(1.0, 0.0), "cohesive stress"),
