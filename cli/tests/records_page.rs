@@ -105,6 +105,10 @@ fn the_page_is_that_of_the_files() -> Done {
             assert!(row.ok_or("no events")?.contains(&code), "{code}: {row:?}");
         }
     }
+    // With adhesion the table has columns, and words, of its own.
+    run(&folder.0, "path --nodes 16 --work-of-adhesion 0.05 --unload")?;
+    let table = fs::read_to_string(folder.join("out/path.csv"))?;
+    columns.extend(table.lines().next().ok_or("no header")?.split(',').map(str::to_string));
     assert_eq!(tabulated(of_record, "array"), arrays);
     assert_eq!(tabulated(of_record, "member"), parameters);
     assert_eq!(tabulated(of_table, "column"), columns);

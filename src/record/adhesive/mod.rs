@@ -22,7 +22,7 @@ const SAME: f64 = 1e-9;
 /// use asperity::{Boussinesq, ContactTarget, Grid, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
-/// let half_space = Boussinesq::new(Grid::square(16, 1e-3)?, 1e6)?;
+/// let half_space = Boussinesq::new(Grid::square(32, 1e-3)?, 1e6)?;
 /// let surface = SelfAffine::zhang2020(1);
 /// let mut path = AdhesivePath::builder(&surface, &half_space, Adhesion::work(0.05))
 ///     .until(ContactTarget::Load(0.01))
