@@ -43,6 +43,24 @@ pub enum AdhesiveEvent {
     Limit,
 }
 
+impl AdhesiveEvent {
+    /// Its name in files and tables: `jump_start` for [`Self::JumpStart`].
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Near => "near",
+            Self::Pull => "pull",
+            Self::Touch => "touch",
+            Self::Part => "part",
+            Self::Soften => "soften",
+            Self::Far => "far",
+            Self::JumpStart => "jump_start",
+            Self::JumpEnd => "jump_end",
+            Self::Limit => "limit",
+        }
+    }
+}
+
 /// The way of the approach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -51,6 +69,17 @@ pub enum Direction {
     Loading,
     /// It falls.
     Unloading,
+}
+
+impl Direction {
+    /// Its name in files and tables: `loading` or `unloading`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Loading => "loading",
+            Self::Unloading => "unloading",
+        }
+    }
 }
 
 impl Direction {

@@ -1,7 +1,7 @@
 //! The states of branches.
 
 use asperity::adhesion as engine;
-use asperity::adhesion::{AdhesiveEvent, Direction};
+use asperity::adhesion::AdhesiveEvent;
 use numpy::{Element, PyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -9,28 +9,6 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::arrays::column;
 use crate::errors::{Failure, Fallible};
-
-/// The word for an event, as in `path.csv` of the program.
-fn word(event: AdhesiveEvent) -> &'static str {
-    match event {
-        AdhesiveEvent::Near => "near",
-        AdhesiveEvent::Pull => "pull",
-        AdhesiveEvent::Touch => "touch",
-        AdhesiveEvent::Part => "part",
-        AdhesiveEvent::Soften => "soften",
-        AdhesiveEvent::Far => "far",
-        AdhesiveEvent::JumpStart => "jump_start",
-        AdhesiveEvent::JumpEnd => "jump_end",
-        _ => "limit",
-    }
-}
-
-fn direction(direction: Direction) -> &'static str {
-    match direction {
-        Direction::Loading => "loading",
-        Direction::Unloading => "unloading",
-    }
-}
 
 /// States are pickled as a branch of one.
 fn pickled<'py>(
@@ -62,14 +40,14 @@ impl AdhesiveState {
     /// ``"loading"`` or ``"unloading"``.
     #[getter]
     fn branch(&self) -> &'static str {
-        direction(self.state.direction)
+        self.state.direction.name()
     }
 
     /// What happens: ``"near"``, ``"pull"``, ``"touch"``, ``"part"``, ``"soften"``, ``"far"``, ``"jump_start"``, ``"jump_end"``, or
     /// nothing, at a ``"limit"``.
     #[getter]
     fn event(&self) -> &'static str {
-        word(self.state.event)
+        self.state.event.name()
     }
 
     /// Row of the node to which it happens; at a jump that of the node that was unstable.
@@ -276,9 +254,9 @@ impl AdhesiveBranch {
         let states = self.branch.states();
         let words = |words: Vec<&'static str>| numpy.call_method1("array", (words, "U10"));
         columns.set_item("step", self.column(py, |s| s.step as i64))?;
-        let branches = states.iter().map(|s| direction(s.direction)).collect();
+        let branches = states.iter().map(|s| s.direction.name()).collect();
         columns.set_item("branch", words(branches)?)?;
-        columns.set_item("event", words(states.iter().map(|s| word(s.event)).collect())?)?;
+        columns.set_item("event", words(states.iter().map(|s| s.event.name()).collect())?)?;
         columns.set_item("row", self.column(py, |s| s.node.1 as i64))?;
         columns.set_item("column", self.column(py, |s| s.node.0 as i64))?;
         let contact_nodes = self.column(py, |s| s.contact.contact_nodes as i64);

@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use asperity::adhesion::{
-    AdhesiveBranch, AdhesiveEnd, AdhesiveEvent, AdhesivePath, AdhesiveState, Direction,
-};
+use asperity::adhesion::{AdhesiveBranch, AdhesiveEnd, AdhesivePath, AdhesiveState, Direction};
 use asperity::contact::ContactTarget;
 use asperity::record::AdhesiveRecord;
 use asperity_cli::number::{counted, scientific};
@@ -239,7 +237,7 @@ fn line(state: &AdhesiveState) -> String {
     format!(
         "{},{ix},{iy},{},{:e},{:e},{:e},{:e},{:e},{},{},{},{},{},{:e},{:e},{:e},{:e}",
         state.step,
-        event(state.event),
+        state.event.name(),
         contact.approach,
         contact.load,
         contact.contact_area,
@@ -247,7 +245,7 @@ fn line(state: &AdhesiveState) -> String {
         contact.mean_gap,
         printed(contact.contact_stiffness),
         printed(contact.interfacial_stiffness),
-        branch(state.direction),
+        state.direction.name(),
         state.soft_nodes,
         state.cohesive_nodes,
         contact.energy,
@@ -255,29 +253,6 @@ fn line(state: &AdhesiveState) -> String {
         state.dissipated,
         state.work,
     )
-}
-
-/// The name of a branch in files and tables.
-pub(super) fn branch(direction: Direction) -> &'static str {
-    match direction {
-        Direction::Loading => "loading",
-        Direction::Unloading => "unloading",
-    }
-}
-
-/// The name of an event in the file.
-fn event(event: AdhesiveEvent) -> &'static str {
-    match event {
-        AdhesiveEvent::Near => "near",
-        AdhesiveEvent::Pull => "pull",
-        AdhesiveEvent::Touch => "touch",
-        AdhesiveEvent::Part => "part",
-        AdhesiveEvent::Soften => "soften",
-        AdhesiveEvent::Far => "far",
-        AdhesiveEvent::JumpStart => "jump_start",
-        AdhesiveEvent::JumpEnd => "jump_end",
-        _ => "limit",
-    }
 }
 
 /// Why a path has ended.

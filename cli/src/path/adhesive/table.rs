@@ -6,7 +6,7 @@ use asperity_cli::number::{counted, quantity};
 use asperity_cli::{say, speech};
 
 use super::super::job::Job;
-use super::course::{Followed, branch};
+use super::course::Followed;
 use super::words::{Pulled, pull};
 use crate::columns::{Column, print as print_columns};
 
@@ -91,7 +91,7 @@ fn columns(job: &Job, rows: &[AdhesiveState]) {
     };
     let share = rows.iter().map(|s| (s.soft_nodes + s.cohesive_nodes) as f64 / nodes);
     let mut columns = vec![
-        Column::words("branch", rows.iter().map(|state| branch(state.direction))),
+        Column::words("branch", rows.iter().map(|state| state.direction.name())),
         column("load", "N", |s| s.contact.load),
         column("pressure", "Pa", |s| s.contact.mean_pressure()),
         Column::percent("area", rows.iter().map(|s| s.contact.contact_area_fraction)),
