@@ -11,15 +11,15 @@ use super::exact::Exact;
 use super::gap_field::GapField;
 use super::history::History;
 use super::limits::Limits;
-use super::path::{LoadingPath, Procedure};
+use super::path::LoadingPath;
 use super::phase::Phase;
 use super::plastic::Plastic;
 use super::releases::Releases;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings, Memory};
 use super::scalars::PathScalars;
+use super::single::Single;
 use super::solver::LoadingSolver;
-use super::stepwise::Stepwise;
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
 use crate::hardness::Limit;
 use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
@@ -309,16 +309,6 @@ impl<'a> Settings<'a> {
             None => (None, problem),
         };
         let settles = self.rule == ContactRule::FirstContact;
-        let procedure = match growth {
-            ContactGrowth::Unknown => {
-                let estimated = Estimated::with_releases(self.window_size, settles);
-                Procedure::Stepwise(Stepwise::default(), estimated)
-            }
-            _ => {
-                let estimated = Estimated::new(self.window_size, settles);
-                Procedure::Windows(Exact::new(growth, self.window_size), estimated)
-            }
-        };
         // Before first touch.
         let unloaded = ContactState::new(&grid, 0, 0.0, 0.0, f64::INFINITY);
         let last = (growth != ContactGrowth::Unknown).then_some(unloaded);
@@ -344,7 +334,9 @@ impl<'a> Settings<'a> {
         Ok(LoadingPath {
             run,
             phase,
-            procedure,
+            exact: Exact::new(growth, self.window_size),
+            estimated: Estimated::new(self.window_size, settles),
+            single: Single::default(),
             handed_over_at,
             rebuilt_at: None,
             rule: self.rule,

@@ -35,8 +35,6 @@ pub(super) struct Exact {
     window: Window,
     /// The nodes that may touch or yield, by the time at which they would.
     ranking: Ranking,
-    /// All windows so far.
-    log: FactorLog,
     /// Whether the present solution is one of the factor before the last nodes yielded.
     is_behind: bool,
 }
@@ -52,22 +50,15 @@ struct Survey {
 
 impl Exact {
     pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
-        Self {
-            growth,
-            size,
-            window: Window::default(),
-            ranking: Ranking::new(),
-            log: FactorLog::default(),
-            is_behind: false,
-        }
+        Self { growth, size, window: Window::default(), ranking: Ranking::new(), is_behind: false }
     }
 
     /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if
-    /// nothing can happen to any node. Returns what went wrong after them.
+    /// nothing can happen to any node. Returns what went wrong after them. The log of the factor has all windows so far.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
-        updater: &mut dyn LinearUpdater,
+        (updater, log): (&mut dyn LinearUpdater, &mut FactorLog),
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
         if run.waiting().is_none() {
@@ -95,7 +86,7 @@ impl Exact {
         if played == 0 {
             return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
         }
-        self.follow(run, updater)?;
+        self.follow(run, updater, log)?;
         if self.window.events().len() < played {
             failure = None;
         }
@@ -109,11 +100,6 @@ impl Exact {
         Ok(queued.err().or(failure))
     }
 
-    /// All windows so far.
-    pub(super) fn log(&self) -> &FactorLog {
-        &self.log
-    }
-
     /// The present solution, if the factor would find another one, but for rounding.
     pub(super) fn solution(&self, run: &LoadingRun) -> Option<Solution> {
         self.is_behind.then(|| run.field.solution().clone())
@@ -121,9 +107,8 @@ impl Exact {
 
     /// Goes on behind these windows, from a solution of the factor before, if there is one. The nodes that the last one
     /// left are watched in the same order.
-    pub(super) fn follow_on(&mut self, log: FactorLog, is_behind: bool) {
+    pub(super) fn follow_on(&mut self, log: &FactorLog, is_behind: bool) {
         self.window = Window::ended_with(log.untouched());
-        self.log = log;
         self.is_behind = is_behind;
     }
 
@@ -271,6 +256,7 @@ impl Exact {
         &mut self,
         run: &mut LoadingRun,
         updater: &mut dyn LinearUpdater,
+        log: &mut FactorLog,
     ) -> Result<(), Error> {
         // When the first contradiction was is an estimate, which must not make the search long if it keeps
         // failing.
@@ -278,7 +264,7 @@ impl Exact {
         while !self.window.is_of_touches() {
             let (trial, until) = self.try_end(run, updater)?;
             if self.take_back(run, until, &mut fewest) == 0 {
-                return self.commit(run, updater, trial);
+                return self.commit(run, updater, log, trial);
             }
         }
         let count = run.contact.len();
@@ -302,7 +288,7 @@ impl Exact {
             run.cut(updater, count)?;
             return Err(error);
         }
-        self.log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
+        log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
         self.is_behind = false;
         Ok(())
     }
@@ -397,6 +383,7 @@ impl Exact {
         &mut self,
         run: &mut LoadingRun,
         updater: &mut dyn LinearUpdater,
+        log: &mut FactorLog,
         trial: Trial,
     ) -> Result<(), Error> {
         let step = run.steps();
@@ -417,7 +404,7 @@ impl Exact {
         followed.map_err(|error| run.memory.in_all(error))?;
         run.releases.remember(known);
         let places = left.iter().map(|left| left.position);
-        self.log.push_yielded(trial.yielded.len(), places, &joined);
+        log.push_yielded(trial.yielded.len(), places, &joined);
         self.is_behind = true;
         trial.adopt(run);
         Ok(())

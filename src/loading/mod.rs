@@ -92,10 +92,10 @@ mod resume;
 mod rule;
 mod run;
 mod scalars;
+mod single;
 mod snapshot;
 mod solver;
 mod state;
-mod stepwise;
 mod sum;
 #[cfg(test)]
 mod test_chain;

@@ -5,15 +5,13 @@ use std::iter::FusedIterator;
 use nalgebra::DMatrix;
 
 use super::estimated::Estimated;
-use super::estimated::leaving::Attempt;
 use super::exact::Exact;
-use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::Phase;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
+use super::single::Single;
 use super::state::LoadingState;
-use super::stepwise::Stepwise;
 use crate::contact::ContactTarget;
 use crate::updater::LinearUpdater;
 use crate::{Error, Grid, Problem};
@@ -28,7 +26,10 @@ pub struct LoadingPath {
     pub(super) run: LoadingRun,
     /// The solver of the path.
     pub(super) phase: Phase,
-    pub(super) procedure: Procedure,
+    /// Events in windows with a factor, in windows without, and one at a time where nodes may leave.
+    pub(super) exact: Exact,
+    pub(super) estimated: Estimated,
+    pub(super) single: Single,
     /// Elastic nodes in contact when the factor was given up.
     pub(super) handed_over_at: Option<usize>,
     /// The event behind which the path was made again from states alone: no window has begun there yet.
@@ -40,26 +41,6 @@ pub struct LoadingPath {
     /// The error that follows the states in the queue.
     pub(super) failure: Option<Error>,
     pub(super) end: Option<LoadingEnd>,
-}
-
-/// How events are found, chosen once.
-#[derive(Debug)]
-pub(super) enum Procedure {
-    /// In windows: exact ones while there is a factor, and estimated ones with iterations.
-    Windows(Exact, Estimated),
-    /// One at a time, and with iterations in windows until a node leaves.
-    Stepwise(Stepwise, Estimated),
-}
-
-impl Procedure {
-    /// Goes on with a factor that grew so; with none if there is nothing in the log. The solution at hand may be one of
-    /// the factor before nodes yielded.
-    pub(super) fn follow_on(&mut self, log: FactorLog, is_behind: bool) {
-        match self {
-            Self::Windows(exact, _) => exact.follow_on(log, is_behind),
-            Self::Stepwise(stepwise, _) => stepwise.follow_on(log),
-        }
-    }
 }
 
 impl LoadingPath {
@@ -137,40 +118,19 @@ impl LoadingPath {
         };
         if !is_enough && phase.hand_over(run, end)? {
             self.handed_over_at = Some(run.contact.len());
-            // How the factor grew is of no use any more.
-            self.procedure.follow_on(FactorLog::default(), false);
         }
         let stop = phase.stop(run, end);
-        match (&mut self.procedure, phase) {
-            (Procedure::Stepwise(stepwise, estimated), phase) => {
-                // Whatever the limit, so that a path that goes on behind it is the same.
-                if let Phase::Iterations(iterations) = phase {
-                    let attempt = estimated.attempt(run, &mut **iterations)?;
-                    if attempt != Attempt::NotBegun {
-                        stepwise.forget();
-                    }
-                    if attempt == Attempt::Made {
-                        // Its end has been checked.
-                        stepwise.inherit(0.0);
-                        return Ok(());
-                    }
-                    if !stepwise.has_begun() {
-                        // Its solution is more exact.
-                        run.field.forget();
-                    }
-                }
-                stepwise.produce(run, phase, most_nodes)
-            }
+        let may_leave = run.may_leave();
+        match phase {
+            phase if may_leave => self.single.produce(run, phase, &mut self.estimated, most_nodes),
             _ if is_enough => Ok(()),
-            (Procedure::Windows(_, estimated), Phase::Iterations(iterations)) => {
-                estimated.produce(run, &mut **iterations)
-            }
-            (Procedure::Windows(exact, _), Phase::Factor { updater, .. }) => {
+            Phase::Iterations(iterations) => self.estimated.produce(run, &mut **iterations),
+            Phase::Factor { updater, log, .. } => {
                 let most = if run.plastic.is_some() { limit } else { most_nodes.min(stop) };
-                let failure = exact.produce(run, updater.as_mut(), most)?;
+                let failure = self.exact.produce(run, (updater.as_mut(), log), most)?;
                 if run.queue.is_empty() && run.waiting().is_some() {
                     // Nothing came before it, and contact that only grows has events up to the last node.
-                    return Err(failure.unwrap_or_else(|| exact.growth_stopped(run)));
+                    return Err(failure.unwrap_or_else(|| self.exact.growth_stopped(run)));
                 }
                 self.failure = failure;
                 Ok(())
@@ -200,7 +160,7 @@ impl Iterator for LoadingPath {
         if self.end.is_some() {
             return (0, Some(0));
         }
-        if let Procedure::Stepwise(..) = self.procedure {
+        if self.run.may_leave() {
             // Nodes may leave and touch again.
             return (0, None);
         }

@@ -14,13 +14,14 @@ use crate::updater::{
     ConjugateGradient, Handover, Iterations, Left, LinearUpdater, RecursiveCholesky, Solution,
     WindowFactor, join_all,
 };
-use crate::{ContactGrowth, Error, Problem};
+use crate::{Error, Problem};
 
 /// The solver of a path.
 #[derive(Debug)]
 pub(super) enum Phase {
-    /// An updater; the path gives it up for iterations when its rest is cheaper with these, if `may_end`.
-    Factor { updater: Box<dyn LinearUpdater>, may_end: bool },
+    /// An updater and how it grew so far; the path gives it up for iterations when its rest is cheaper with these, if
+    /// `may_end`.
+    Factor { updater: Box<dyn LinearUpdater>, log: FactorLog, may_end: bool },
     /// Iterations, whose Schur complements the path corrects.
     Iterations(Box<dyn Iterations>),
 }
@@ -38,7 +39,7 @@ impl Phase {
             return Self::Iterations(Box::new(iterations.clone()));
         }
         let may_end = hand_over.unwrap_or_else(|| own.is::<Handover>());
-        Self::Factor { updater, may_end }
+        Self::Factor { updater, log: FactorLog::default(), may_end }
     }
 
     /// Gives up the factor if it does not serve any more on a path to `end` nodes in contact. Returns whether it has
@@ -75,7 +76,7 @@ impl Phase {
     /// of a path to `end` nodes in contact is cheaper with them and they can do, or where the factor leaves no room for
     /// one more window. Without room for iterations it stays as long as it can.
     fn successor(&self, run: &LoadingRun, count: usize, end: usize) -> Option<Box<dyn Iterations>> {
-        let Self::Factor { updater, may_end: true } = self else {
+        let Self::Factor { updater, may_end: true, .. } = self else {
             return None;
         };
         let nodes = run.problem.grid().nodes();
@@ -85,7 +86,7 @@ impl Phase {
         let fits = run.memory.check(needed, count).is_ok();
         let is_cheaper = rest(run, count, end).is_cheaper_without();
         // Fewer nodes have no windows without a factor where contact need not grow.
-        let has_windows = run.problem.growth() != ContactGrowth::Unknown || count >= LEAST_CONTACT;
+        let has_windows = !run.may_leave() || count >= LEAST_CONTACT;
         let pays = is_cheaper && has_windows && iterations.check_cells(&run.problem).is_ok();
         if fits && !pays {
             return None;
@@ -123,12 +124,14 @@ impl Phase {
         (node, time): (usize, f64),
     ) -> Result<(), Error> {
         match self {
-            Self::Factor { updater, .. } => {
+            Self::Factor { updater, log, .. } => {
                 run.affordable(updater.as_ref(), 1)?;
                 run.watch(updater.as_mut(), window, std::iter::once(node), f64::INFINITY)?;
                 let touched = window.happen(0, time);
                 touched.map_err(|bad| run.not_positive_definite(bad))?;
-                run.join(updater.as_mut(), window)
+                run.join(updater.as_mut(), window)?;
+                log.push(&[node], std::iter::once(0), 1);
+                Ok(())
             }
             Self::Iterations(_) => {
                 self.check_room(run, run.contact.len() + 1)?;
@@ -154,18 +157,19 @@ impl Phase {
         run.memory.check(self.bytes(grid.nodes(), contact), run.contact.len())
     }
 
-    /// Goes on without nodes that left the contact.
+    /// Goes on without a node that left the contact.
     pub(super) fn release(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        left: &[Left],
+        left: Left,
     ) -> Result<(), Error> {
-        match self {
-            Self::Factor { updater, .. } => updater.release(problem, contact, left),
-            // Iterations solve on the contact as it is then.
-            Self::Iterations(_) => Ok(()),
+        // Iterations solve on the contact as it is then.
+        if let Self::Factor { updater, log, .. } = self {
+            updater.release(problem, contact, &[left])?;
+            log.push_left(left.position);
         }
+        Ok(())
     }
 
     /// Begins anew with a contact that is known. Returns whether the factor is given up at once.
@@ -182,7 +186,8 @@ impl Phase {
             *self = Self::Iterations(iterations);
         }
         let restored = match self {
-            Self::Factor { updater, .. } => {
+            Self::Factor { updater, log, .. } => {
+                *log = FactorLog::of_blocks(order);
                 join_all(updater.as_mut(), &run.problem, &mut run.contact, order, run.memory.left())
                     .map_err(|error| run.memory.in_all(error))
             }
@@ -196,14 +201,17 @@ impl Phase {
         &mut self,
         run: &LoadingRun,
         contact: &ContactSequence,
-        log: &FactorLog,
+        known: &FactorLog,
     ) -> Result<bool, Error> {
-        match self {
-            Self::Factor { updater, .. } => {
-                log.replay(updater.as_mut(), &run.problem, contact, run.memory.left())
-            }
-            Self::Iterations(_) => Ok(false),
+        let Self::Factor { updater, log, .. } = self else {
+            return Ok(false);
+        };
+        let left = run.memory.left();
+        let fits = known.replay(updater.as_mut(), &run.problem, contact, left)?;
+        if fits {
+            log.clone_from(known);
         }
+        Ok(fits)
     }
 
     /// Goes on with iterations where a window ended. Returns whether they are those of this path.
@@ -302,7 +310,7 @@ fn rest(run: &LoadingRun, count: usize, end: usize) -> Rest {
     let nodes = run.problem.grid().nodes();
     let Some(plastic) = &run.plastic else {
         let rest = Rest::growing(nodes, count, end);
-        if run.problem.growth() != ContactGrowth::Unknown {
+        if !run.may_leave() {
             return rest;
         }
         // As so far.

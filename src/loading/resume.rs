@@ -1,8 +1,7 @@
 //! A path that goes on where an earlier one stopped.
 
-use super::factor_log::FactorLog;
 use super::history::History;
-use super::path::{LoadingPath, Procedure};
+use super::path::LoadingPath;
 use super::snapshot::{Snapshot, not_on_path};
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::{ContactSequence, node_of};
@@ -65,10 +64,7 @@ impl LoadingPath {
         if phase.restore(run, &order, end)? {
             self.handed_over_at = Some(order.len());
         }
-        self.procedure.follow_on(FactorLog::of_blocks(&order), false);
-        if let Procedure::Stepwise(stepwise, _) = &mut self.procedure {
-            stepwise.inherit(last.approach_error);
-        }
+        self.single.inherit(last.approach_error);
         phase.renew_field(run, run.scalars.approach())?;
         run.scalars.renew_load(&run.problem, &run.contact, &run.field);
         let snapshot = Snapshot::of(run, phase, &last)?;

@@ -14,7 +14,7 @@ use super::sum::Sum;
 use super::window::{BadPivot, Window};
 use crate::contact::{ContactSequence, ContactState};
 use crate::updater::{Behind, Iterations, LinearUpdater, Schur, Solution, WindowFactor};
-use crate::{Boundary, Error, Grid, Problem, UpdaterError};
+use crate::{Boundary, ContactGrowth, Error, Grid, Problem, UpdaterError};
 
 /// Where a path spent its time, besides its updater.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -126,6 +126,11 @@ impl LoadingRun {
     /// Whether a node has yielded.
     pub(super) fn has_yielded(&self) -> bool {
         self.plastic.as_ref().is_some_and(|plastic| plastic.count() > 0)
+    }
+
+    /// Whether nothing is known of the kernel, so that nodes may leave the contact.
+    pub(super) fn may_leave(&self) -> bool {
+        self.problem.growth() == ContactGrowth::Unknown
     }
 
     /// Whether a node in contact has a hardness that it can come to.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::estimated::resumed::EstimatedEnd;
 use super::factor_log::FactorLog;
 use super::limits::LoadingEnd;
-use super::path::{LoadingPath, Procedure};
+use super::path::LoadingPath;
 use super::phase::Phase;
 use super::snapshot::{Snapshot, not_on_path};
 use super::state::{ContactEvent, LoadingState};
@@ -61,22 +61,20 @@ impl LoadingPath {
         if self.rebuilt_at == Some(step) || self.failure.is_some() || is_over {
             return None;
         }
-        let (log, solution) = match &self.procedure {
-            Procedure::Windows(exact, _) => (exact.log(), exact.solution(&self.run)),
-            Procedure::Stepwise(stepwise, _) => (stepwise.log(), None),
-        };
-        let next = match (&self.phase, &self.procedure) {
-            (Phase::Factor { .. }, _) => {
-                let (log, scalars) = (log.clone(), self.run.scalars.numbers());
-                NextWindow::Factor(Box::new(FactorEnd { log, scalars, solution }))
-            }
-            (Phase::Iterations(iterations), Procedure::Windows(_, estimated)) => {
-                let end = estimated.end(&self.run, &**iterations, false)?;
-                NextWindow::Iterations(Box::new(end))
-            }
-            (Phase::Iterations(iterations), Procedure::Stepwise(stepwise, estimated)) => {
-                let end = estimated.end(&self.run, &**iterations, stepwise.has_begun())?;
-                NextWindow::Iterations(Box::new(end))
+        let run = &self.run;
+        let next = match &self.phase {
+            Phase::Factor { log, .. } => NextWindow::Factor(Box::new(FactorEnd {
+                log: log.clone(),
+                scalars: run.scalars.numbers(),
+                solution: self.exact.solution(run),
+            })),
+            Phase::Iterations(iterations) => {
+                let is_single = self.single.has_begun();
+                NextWindow::Iterations(Box::new(self.estimated.end(
+                    run,
+                    &**iterations,
+                    is_single,
+                )?))
             }
         };
         let ahead = self.run.queue.iter().copied().collect();
@@ -90,7 +88,6 @@ impl LoadingPath {
             return Ok(false);
         };
         let (run, phase) = (&mut self.run, &mut self.phase);
-        let may_leave = matches!(self.procedure, Procedure::Stepwise(..));
         let mut contact = run.contact.clone();
         let mut left = Vec::new();
         let mut yielded: Vec<usize> = run.releases.yielded_at(last.step).collect();
@@ -99,7 +96,7 @@ impl LoadingPath {
             let node = run.problem.grid().node(ix, iy).unwrap_or(usize::MAX);
             let is_event = match state.event {
                 ContactEvent::Touch => contact.push(node).map(|()| true)?,
-                ContactEvent::Release if may_leave => {
+                ContactEvent::Release if run.may_leave() => {
                     let position = contact.remove(node)?;
                     left.push((step, state.event, Left { node, position }));
                     true
@@ -134,13 +131,12 @@ impl LoadingPath {
             let plastic = run.plastic.replace(Arc::new(plastic));
             (plastic, mem::replace(&mut run.problem, problem))
         });
-        let restored = match (&end.next, &mut self.procedure) {
-            (NextWindow::Factor(end), _) => phase.restore_factor(run, &contact, &end.log),
-            (
-                NextWindow::Iterations(end),
-                Procedure::Windows(_, estimated) | Procedure::Stepwise(_, estimated),
-            ) if estimated.can_follow(end) => phase.restore_iterations(run, &contact, end),
-            (NextWindow::Iterations(_), _) => Ok(false),
+        let restored = match &end.next {
+            NextWindow::Factor(end) => phase.restore_factor(run, &contact, &end.log),
+            NextWindow::Iterations(end) if self.estimated.can_follow(end) => {
+                phase.restore_iterations(run, &contact, end)
+            }
+            NextWindow::Iterations(_) => Ok(false),
         };
         if !matches!(restored, Ok(true)) {
             if let Some(before) = before {
@@ -157,16 +153,12 @@ impl LoadingPath {
         let known = if run.releases.is_prefix(last.step) { &last } else { front };
         let snapshot = Snapshot::of(run, phase, known)?;
         snapshot.recognise(run, phase, known)?;
-        let scalars = match (&end.next, &mut *phase, &mut self.procedure) {
-            (
-                NextWindow::Iterations(end),
-                Phase::Iterations(iterations),
-                Procedure::Windows(_, estimated) | Procedure::Stepwise(_, estimated),
-            ) => {
-                estimated.follow_on(run, &mut **iterations, end)?;
+        let scalars = match (&end.next, &mut *phase) {
+            (NextWindow::Iterations(end), Phase::Iterations(iterations)) => {
+                self.estimated.follow_on(run, &mut **iterations, end)?;
                 end.scalars
             }
-            (NextWindow::Factor(end), ..) => Some(end.scalars),
+            (NextWindow::Factor(end), _) => Some(end.scalars),
             _ => None,
         };
         if let Some(scalars) = scalars {
@@ -196,20 +188,16 @@ impl LoadingPath {
                 return Err(not_on_path(front, "load", own.load, "the load of the state"));
             }
         }
-        let (log, solution) = match &end.next {
-            NextWindow::Factor(end) => (end.log.clone(), end.solution.clone()),
-            NextWindow::Iterations(_) => (FactorLog::default(), None),
-        };
-        self.procedure.follow_on(log, solution.is_some());
-        if let Some(solution) = solution {
-            let approach = run.scalars.approach();
-            run.field.place(&run.contact, solution, approach)?;
-            run.check_closed(&run.problem, &run.contact, approach)?;
+        if let NextWindow::Factor(end) = &end.next {
+            self.exact.follow_on(&end.log, end.solution.is_some());
+            if let Some(solution) = &end.solution {
+                let approach = run.scalars.approach();
+                run.field.place(&run.contact, solution.clone(), approach)?;
+                run.check_closed(&run.problem, &run.contact, approach)?;
+            }
         }
-        if let Procedure::Stepwise(stepwise, _) = &mut self.procedure
-            && scalars.is_some()
-        {
-            stepwise.begin(run, phase)?;
+        if run.may_leave() && scalars.is_some() {
+            self.single.begin(run, phase)?;
         }
         run.last = run.last.map(|_| front.contact);
         run.queue = end.ahead.iter().copied().collect();

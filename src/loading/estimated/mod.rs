@@ -44,8 +44,6 @@ pub(super) struct Estimated {
     size: usize,
     /// Whether events that are too close to be told apart get a solution of their own.
     settles: bool,
-    /// Whether nodes may leave.
-    may_leave: bool,
     /// The nodes to which something may happen by the time when it would if nothing else came first, at the present
     /// approach.
     ranking: Ranking,
@@ -81,7 +79,6 @@ impl Estimated {
         Self {
             size: size.unwrap_or(watched).max(FEWEST),
             settles,
-            may_leave: false,
             ranking: Vec::new(),
             beyond: f64::INFINITY,
             rates: Rates { unit_stiffness: 0.0, closing: 0.0, plastic: [0.0; 2] },
@@ -92,11 +89,6 @@ impl Estimated {
             left_out: 0.0,
             joined: Vec::new(),
         }
-    }
-
-    /// The same on a body on which nodes may leave.
-    pub(super) fn with_releases(size: Option<usize>, settles: bool) -> Self {
-        Self { may_leave: true, ..Self::new(size, settles) }
     }
 
     /// Computes a window of states before the next node leaves, where nodes may. Without one nothing has happened to
@@ -309,7 +301,7 @@ impl Estimated {
         let mut first = window.clone();
         let bad = first.play(usize::MAX);
         let events = first.events();
-        if events.is_empty() && self.may_leave {
+        if events.is_empty() && run.may_leave() {
             return Ok(Outcome::Alone);
         }
         if events.is_empty() {
@@ -325,11 +317,11 @@ impl Estimated {
         let horizon = (window.horizon(), window.nodes().len() == self.ranking.len());
         let (mut kept, mut time) = cut(events, horizon, most, tolerances);
         let start = run.scalars.approach();
-        let at_start = self.may_leave.then(|| AtStart::of(run, &self.ranking, window));
+        let at_start = run.may_leave().then(|| AtStart::of(run, &self.ranking, window));
         let mut has_moved = false;
         loop {
             if time <= tolerances.tie {
-                if self.may_leave {
+                if run.may_leave() {
                     return Ok(Outcome::Alone);
                 }
                 // All of them happen at once. Their courses are better known than those of the ranking.
@@ -380,7 +372,7 @@ impl Estimated {
             let sooner = until.filter(|until| until.is_finite()).map_or(kept / 2, |until| {
                 events.iter().take_while(|event| event.time <= time + until).count()
             });
-            if self.may_leave && sooner == 0 {
+            if run.may_leave() && sooner == 0 {
                 return Ok(Outcome::Alone);
             }
             if kept > 1 {

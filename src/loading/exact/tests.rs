@@ -143,7 +143,7 @@ fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun, usize), Error> {
     let watched = [(2, 0.5), (4, 0.75), (6, 1.25), (8, 1.5)];
     windows.window = test_chain::apart(&watched, f64::INFINITY);
     assert_eq!(windows.window.play(4), None);
-    windows.follow(&mut run, &mut Dense)?;
+    windows.follow(&mut run, &mut Dense, &mut FactorLog::default())?;
     Ok((run, windows.window.events().len()))
 }
 

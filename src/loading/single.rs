@@ -1,9 +1,11 @@
-//! One event at a time: nodes that touch and nodes that leave, for kernels of which nothing is known.
+//! One event at a time, where a node may leave at any moment: touches and releases, each from a solution of its own.
 
 use super::tuning::{ESTIMATED, LEAST_RATE, TIED_EVENTS, TOLERANCE};
 
-use super::factor_log::FactorLog;
+use super::estimated::Estimated;
+use super::estimated::leaving::Attempt;
 use super::phase::Phase;
+use super::ranking::{Ranking, fill};
 use super::run::LoadingRun;
 use super::state::ContactEvent;
 use super::tolerances::{WindowTolerances, ties_until};
@@ -22,43 +24,28 @@ struct Upcoming {
     event: ContactEvent,
 }
 
-/// Finds every event, touch or release, from a solution of its own.
+/// Finds events for kernels of which nothing is known: what is right at the end of a window need not have been right
+/// throughout, so that with a factor each event has a solution of its own, and without one those that no window
+/// [between releases](super::estimated::leaving) holds.
 #[derive(Debug, Default)]
-pub(super) struct Stepwise {
+pub(super) struct Single {
     upcoming: Option<Upcoming>,
     window: Window,
-    /// Those of the nodes out of contact whose gap closes.
-    touches: Vec<Upcoming>,
+    /// Nodes out of contact by the approach at which they touch.
+    touches: Ranking,
     /// Events so far at the approach of the front.
     tied: usize,
     /// Whether the next event has been looked for.
     has_begun: bool,
-    /// All events of the factor so far.
-    log: FactorLog,
     /// The error of the state that the path goes on from, if that is an estimate and no solution has been without
     /// tension and overlap since.
     inherited: f64,
 }
 
-impl Stepwise {
+impl Single {
     /// Whether the next event is known at the present state.
     pub(super) fn has_begun(&self) -> bool {
         self.has_begun
-    }
-
-    /// Says that the path has gone on otherwise.
-    pub(super) fn forget(&mut self) {
-        self.has_begun = false;
-    }
-
-    /// All events of the factor so far.
-    pub(super) fn log(&self) -> &FactorLog {
-        &self.log
-    }
-
-    /// Goes on with a factor that grew so.
-    pub(super) fn follow_on(&mut self, log: FactorLog) {
-        self.log = log;
     }
 
     /// Goes on from a state of which the approach may be off by `error`.
@@ -75,13 +62,29 @@ impl Stepwise {
         Ok(())
     }
 
-    /// Computes one state, unless there is none with at most `most_nodes` in contact.
+    /// Computes states up to the next release without a factor, if a window holds them; otherwise one state, unless
+    /// there is none with at most `most_nodes` in contact.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
         phase: &mut Phase,
+        estimated: &mut Estimated,
         most_nodes: usize,
     ) -> Result<(), Error> {
+        // Whatever the limit, so that a path that goes on behind it is the same.
+        if let Phase::Iterations(iterations) = phase {
+            let attempt = estimated.attempt(run, &mut **iterations)?;
+            self.has_begun &= attempt == Attempt::NotBegun;
+            if attempt == Attempt::Made {
+                // Its end has been checked.
+                self.inherited = 0.0;
+                return Ok(());
+            }
+            if !self.has_begun {
+                // The solution of a single event is more exact.
+                run.field.forget();
+            }
+        }
         self.begin(run, phase)?;
         let enough = run.contact.len() >= most_nodes;
         let within = |next: &Upcoming| next.event == ContactEvent::Release || !enough;
@@ -96,14 +99,8 @@ impl Stepwise {
         if next.event == ContactEvent::Touch {
             let time = next.approach - run.scalars.approach();
             phase.admit(run, &mut self.window, (next.node, time))?;
-            if let Phase::Factor { .. } = phase {
-                self.log.push(&[next.node], std::iter::once(0), 1);
-            }
         } else {
-            let position = Self::release(run, phase, step, next.node)?;
-            if let Phase::Factor { .. } = phase {
-                self.log.push_left(position);
-            }
+            Self::release(run, phase, step, next.node)?;
         }
         let inherited = self.inherited;
         run.scalars.advance(next.approach);
@@ -134,21 +131,21 @@ impl Stepwise {
         Ok(())
     }
 
-    /// Takes a node out of the contact; returns its place there.
+    /// Takes a node out of the contact.
     fn release(
         run: &mut LoadingRun,
         phase: &mut Phase,
         step: usize,
         node: usize,
-    ) -> Result<usize, Error> {
-        let position = run.contact.remove(node)?;
+    ) -> Result<(), Error> {
+        let left = Left { node, position: run.contact.remove(node)? };
         // First, so that earlier contacts are known even if the updater panics.
-        run.releases.push(step, Left { node, position });
-        let released = phase.release(&run.problem, &run.contact, &[Left { node, position }]);
+        run.releases.push(step, left);
+        let released = phase.release(&run.problem, &run.contact, left);
         if released.is_err() {
             run.take_back_release()?;
         }
-        released.map(|()| position)
+        released
     }
 
     /// Solves at the present approach, checks the conditions of contact there, and finds the next event.
@@ -172,18 +169,9 @@ impl Stepwise {
             run.scalars.renew_stiffness(run.field.solution());
         }
         let start = Stopwatch::start();
-        self.touches.clear();
-        self.touches.reserve(run.problem.grid().nodes());
-        run.survey(Some(allowed), |node, line| {
+        fill(run, &mut self.touches, Some(allowed), |line| {
             is_sound &= line.gap >= -overlap.max(TOLERANCE * length);
-            if line.closing > LEAST_RATE {
-                self.touches.push(Upcoming {
-                    approach: approach + line.gap / line.closing,
-                    error: overlap / line.closing,
-                    node,
-                    event: ContactEvent::Touch,
-                });
-            }
+            if line.closing > LEAST_RATE { approach + line.touches() } else { f64::INFINITY }
         })?;
         if is_sound {
             self.inherited = 0.0;
@@ -196,26 +184,27 @@ impl Stepwise {
     /// The next event: of all that would come first, or within rounding of it, the one of the node of lowest
     /// index.
     fn first_event(&self, run: &LoadingRun, overlap: f64) -> Option<Upcoming> {
+        use ContactEvent::{Release, Touch};
         let front = run.scalars.approach();
         let Solution { pressure, rate } = run.field.solution();
         // What y₂ has to be below for a node to lose its pressure.
         let slowest = -LEAST_RATE * run.greatest_rate();
-        let tension = overlap / run.problem.table().self_influence();
-        let releases = run.contact.order().iter().zip(pressure).zip(rate);
-        let releases =
-            releases.filter(|(_, rate)| **rate < slowest).map(|((&node, p), rate)| Upcoming {
-                approach: front - p / rate,
-                error: -tension / rate,
-                node,
-                event: ContactEvent::Release,
-            });
-        let events = self.touches.iter().copied().chain(releases);
-        let events = events.map(|event| Upcoming { approach: event.approach.max(front), ..event });
-        let first = events.clone().map(|event| event.approach).fold(f64::INFINITY, f64::min);
+        let touches = self.touches.iter().map(|&(approach, node)| (approach, node, Touch));
+        let falling = run.contact.order().iter().zip(pressure.iter().zip(rate));
+        let falling = falling.filter(|(_, (_, rate))| **rate < slowest);
+        let releases = falling.map(|(&node, (p, rate))| (front - p / rate, node, Release));
+        let events = touches.chain(releases);
+        let events = events.map(|(approach, node, event)| (approach.max(front), node, event));
+        let first = events.clone().map(|(approach, ..)| approach).fold(f64::INFINITY, f64::min);
         let tied = ties_until(first);
-        events
-            .filter(|event| event.approach <= tied && event.approach < f64::INFINITY)
-            .min_by_key(|event| event.node)
+        let (approach, node, event) = events
+            .filter(|&(approach, ..)| approach <= tied && approach < f64::INFINITY)
+            .min_by_key(|&(_, node, _)| node)?;
+        let error = match run.contact.order().iter().position(|&other| other == node) {
+            Some(place) => -overlap / run.problem.table().self_influence() / rate[place],
+            None => overlap / run.line(node).closing,
+        };
+        Some(Upcoming { approach, error, node, event })
     }
 }
 
@@ -229,16 +218,16 @@ mod tests {
     fn events_at_one_approach_come_to_an_end() -> Result<(), Error> {
         let mut run = test_chain::run(&[0.0; 5])?;
         run.scalars.place_at(1.0);
-        let mut stepwise = Stepwise::default();
+        let mut single = Single::default();
         for _ in 0..120 {
-            stepwise.count_tie(&run, 1.0)?;
+            single.count_tie(&run, 1.0)?;
         }
         // One further on, and all begins anew.
-        stepwise.count_tie(&run, 1.5)?;
+        single.count_tie(&run, 1.5)?;
         for _ in 0..119 {
-            stepwise.count_tie(&run, 1.0)?;
+            single.count_tie(&run, 1.0)?;
         }
-        let refused = stepwise.count_tie(&run, 1.0);
+        let refused = single.count_tie(&run, 1.0);
         assert!(
             matches!(refused, Err(Error::Cycling { approach: 1.0, events: 121 })),
             "{refused:?}"
@@ -246,14 +235,10 @@ mod tests {
         Ok(())
     }
 
-    fn touch(node: usize, approach: f64) -> Upcoming {
-        Upcoming { approach, error: 0.0, node, event: ContactEvent::Touch }
-    }
-
-    /// What comes first at the approach 2 of these touches and of two nodes in contact, 3 and 5, with pressures and
-    /// rates.
+    /// What comes first at the approach 2 of nodes that touch at some approaches and of two nodes in contact, 3 and 5,
+    /// with pressures and rates; the error of a touch as a gap.
     fn first(
-        touches: &[Upcoming],
+        touches: &[(f64, usize)],
         pressure: [f64; 2],
         rate: [f64; 2],
     ) -> Result<Option<(ContactEvent, usize, f64, f64)>, Error> {
@@ -263,9 +248,13 @@ mod tests {
         run.contact.push(5)?;
         run.advance_field(&mut given, 2.0, 1.0)?;
         run.scalars.place_at(2.0);
-        let stepwise = Stepwise { touches: touches.to_vec(), ..Stepwise::default() };
-        let first = stepwise.first_event(&run, 0.25);
-        Ok(first.map(|next| (next.event, next.node, next.approach, next.error)))
+        let single = Single { touches: touches.to_vec(), ..Single::default() };
+        let first = single.first_event(&run, 0.25);
+        Ok(first.map(|Upcoming { approach, error, node, event }| {
+            let is_touch = event == ContactEvent::Touch;
+            let error = if is_touch { error * run.line(node).closing } else { error };
+            (event, node, approach, error)
+        }))
     }
 
     #[test]
@@ -273,23 +262,23 @@ mod tests {
         use ContactEvent::{Release, Touch};
         // 1/2 falls to nothing within 2 m at a rate of −1/4; an overlap of 1/4 is a tension of 1/16, and that 1/4 m.
         let releasing = ([0.5, 1.0], [-0.25, 0.5]);
-        let found = |touches: &[Upcoming]| first(touches, releasing.0, releasing.1);
+        let found = |touches: &[(f64, usize)]| first(touches, releasing.0, releasing.1);
         assert_eq!(found(&[])?, Some((Release, 3, 4.0, 0.25)));
-        assert_eq!(found(&[touch(1, 5.0)])?, Some((Release, 3, 4.0, 0.25)));
-        assert_eq!(found(&[touch(4, 3.5), touch(1, 5.0)])?, Some((Touch, 4, 3.5, 0.0)));
+        assert_eq!(found(&[(5.0, 1)])?, Some((Release, 3, 4.0, 0.25)));
+        assert_eq!(found(&[(3.5, 4), (5.0, 1)])?, Some((Touch, 4, 3.5, 0.25)));
         // What should have happened already happens now.
-        assert_eq!(found(&[touch(1, 1.0)])?, Some((Touch, 1, 2.0, 0.0)));
+        assert_eq!(found(&[(1.0, 1)])?, Some((Touch, 1, 2.0, 0.25)));
         // Of events within rounding, 10⁻¹³ of 4 m, that of the lowest node.
-        assert_eq!(found(&[touch(4, 4.0 - 3e-13)])?, Some((Release, 3, 4.0, 0.25)));
-        assert_eq!(found(&[touch(1, 4.0 + 3e-13)])?, Some((Touch, 1, 4.0 + 3e-13, 0.0)));
-        assert_eq!(found(&[touch(1, 4.0 + 5e-13)])?, Some((Release, 3, 4.0, 0.25)));
-        assert_eq!(found(&[touch(4, 4.0 - 5e-13)])?, Some((Touch, 4, 4.0 - 5e-13, 0.0)));
+        assert_eq!(found(&[(4.0 - 3e-13, 4)])?, Some((Release, 3, 4.0, 0.25)));
+        assert_eq!(found(&[(4.0 + 3e-13, 1)])?, Some((Touch, 1, 4.0 + 3e-13, 0.25)));
+        assert_eq!(found(&[(4.0 + 5e-13, 1)])?, Some((Release, 3, 4.0, 0.25)));
+        assert_eq!(found(&[(4.0 - 5e-13, 4)])?, Some((Touch, 4, 4.0 - 5e-13, 0.25)));
         // A rate within rounding of none, 10⁻¹² of the greatest, releases nothing; nor does one that grows.
         for (rate, release) in [(-0.9e-12, false), (-1.1e-12, true), (0.25, false)] {
             let found = first(&[], [0.5, 1.0], [rate, 1.0])?;
             assert_eq!(found.is_some(), release, "{rate:e}");
         }
-        assert_eq!(first(&[touch(1, f64::INFINITY)], [0.5; 2], [1.0; 2])?, None);
+        assert_eq!(first(&[(f64::INFINITY, 1)], [0.5; 2], [1.0; 2])?, None);
         Ok(())
     }
 
@@ -299,9 +288,9 @@ mod tests {
     fn events_come_one_at_a_time() -> Result<(), Error> {
         let mut run = test_chain::run(&[0.0, 1.25, 1.0, 9.0])?;
         let mut phase = Phase::Iterations(Box::new(test_chain::Altered::inexact(1e-6)));
-        let mut stepwise = Stepwise::default();
+        let (mut single, mut estimated) = (Single::default(), Estimated::new(None, true));
         for _ in 0..4 {
-            stepwise.produce(&mut run, &mut phase, 3)?;
+            single.produce(&mut run, &mut phase, &mut estimated, 3)?;
         }
         let found: Vec<_> = run
             .queue
