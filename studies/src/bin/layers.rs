@@ -127,8 +127,8 @@ fn padded(text: &mut String) -> Result<(), Error> {
     let _ = write!(
         text,
         "\n**Free and padded.** A sphere with a contact some 40 cells wide on a free grid of {n}² cells, and on a periodic grid of so many \
-         times the side with the sphere in its middle, at the same load: relative difference of the greatest pressure. Images of a sphere \
-         in the period L change it by some (a/L)³; those of a layer on a rigid base are not felt.\n\n\
+         times the side, at the same load: relative difference of the greatest pressure. Images of a sphere in the period L change it \
+         by some (a/L)³; those of a layer on a rigid base are not felt.\n\n\
          | body | 1 | 2 | 4 | 8 |\n|---|---:|---:|---:|---:|\n"
     );
     let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };

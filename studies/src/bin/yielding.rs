@@ -126,9 +126,8 @@ fn metals(directory: &Path, text: &mut String) -> Result<Vec<PathBuf>, Failure> 
     // Writing to a text cannot fail.
     let _ = write!(
         text,
-        "\nStudy `yielding`, which also draws the pictures of [Metals that yield](metals_that_yield.md). The surface of the first \
-         command (256 × 256 nodes, E* = 230.8 GPa) with a hardness of 2.5 GPa, typical of steel, to 20 % contact: {} nodes touch and \
-         {} yield, under {:.1} kN; without a hardness the load is {:.0} kN.\n",
+        "\nStudy `yielding`, which also draws the pictures of [Metals that yield](metals_that_yield.md): there {} nodes touch and \
+         {} yield up to 20 % contact, under {:.1} kN; without a hardness the load is {:.0} kN.\n",
         count(ContactEvent::Touch),
         count(ContactEvent::Yield),
         load / 1e3,
@@ -196,7 +195,6 @@ fn tamaas(text: &mut String) {
         "\n### tamaas with a limit of pressure\n\n`KatoSaturated` of tamaas 2.9 with a tolerance of 10⁻¹², on a periodic half-space; \
          asperity follows the path to the same mean pressure. On {surfaces} rough surfaces of 64² and 128² nodes, with H/(E* h′) from \
          0.02 to 1 and mean pressures from 0.05 to 0.9 H, {other} nodes are in contact or yielded in one and not in the other, and \
-         pressures differ by at most {greatest:.1e} H. \
-         `studies/src/bin/peers/hardness.py target/release/asperity studies/src/bin/peers/hardness.csv` solves them again.\n",
+         pressures differ by at most {greatest:.1e} H (`studies/src/bin/peers/hardness.py`).\n",
     );
 }

@@ -37,8 +37,6 @@ pub(crate) struct Full {
     /// (nodes along the wave, relative errors of the load of full contact, of the greatest pressure and of the energy
     /// at P = 1.02).
     pub(crate) errors: Vec<(usize, [f64; 3])>,
-    /// Greatest pressure over p* at P = 1.02 on the finest grid; 2.02 is exact.
-    pub(crate) peak: f64,
     /// Whether contact is full just above the load found, and not just below, on every grid.
     pub(crate) bracketed: bool,
 }
@@ -47,14 +45,14 @@ impl Full {
     fn new(kernel: Periodic) -> Result<Self, Error> {
         let exact = DoubleWave::new(AMPLITUDE, 1.0, 1.0)?;
         let full = exact.full_contact_pressure();
-        let (mut errors, mut peak, mut bracketed) = (Vec::new(), 0.0, true);
+        let (mut errors, mut bracketed) = (Vec::new(), true);
         for nodes in FULL_NODES {
             let grid = Grid::square(nodes, 1.0)?;
             // Nodes on the crests and in the valleys.
             let mut solver = solver(kernel, grid, grid.position(0, 0))?;
             let solution = solver.solve(BEYOND * full)?;
             let found = solution.contact.load - solution.fields.pressure.min();
-            peak = solution.fields.pressure.max() / full;
+            let peak = solution.fields.pressure.max() / full;
             // ½ p u in the mean, both in proportion to the wave.
             let energy = full * AMPLITUDE / 8.0;
             let relative = [found / full, peak / (1.0 + BEYOND), solution.contact.energy / energy];
@@ -64,7 +62,7 @@ impl Full {
             };
             bracketed &= is_full(found * (1.0 + BRACKET))? && !is_full(found * (1.0 - BRACKET))?;
         }
-        Ok(Self { kernel, errors, peak, bracketed })
+        Ok(Self { kernel, errors, bracketed })
     }
 
     /// Order of the error of the load of full contact.

@@ -8,7 +8,7 @@ use asperity_cli::chart::{BLACK, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPL
 use asperity_cli::number::scientific;
 
 use crate::curve::{CELLS, COEFFICIENT, Curve, LOADS, Quantity, SLACK, TOLERANCE};
-use crate::double_wave::{BEYOND, BRACKET, CLOSE, Comparison, EXACT, Full, Limit};
+use crate::double_wave::{BEYOND, BRACKET, CLOSE, Comparison, EXACT, Limit};
 use crate::punch::SquarePunch;
 
 /// By how much the extrapolated stiffness of the square punch may differ from the known one, which is known to a few
@@ -35,15 +35,14 @@ impl Report {
         let mut text = format!(
             "## Closed forms\n\n\
              Study `closed_forms`.\n\n\
-             `FixedLoadSolver` to {} against the closed forms of `asperity::reference`, which share no code with it, at equal load. An \
-             error is the root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a target (of radii, for the \
-             circular punch) and four places of the apex between the nodes. Cells are counted over the radius of the contact, the \
-             shorter semi-axis or the half-width. Pressures are the greatest; where that is infinite, of the cone and the punch, those \
-             from 0.35 to 0.65 of the radius. The approach of a cylinder diverges logarithmically.\n\n\
+             `FixedLoadSolver` to {} against `asperity::reference`, which shares no code with it, at equal load: the root mean \
+             square of the relative error over {LOADS} loads from 3/4 to 5/4 of a target (of radii, for the circular punch) and four \
+             places of the apex between the nodes. Cells are counted over the radius of the contact, the shorter semi-axis or the \
+             half-width. Pressures are the greatest; those of the cone and the punch, which are infinite there, from 0.35 to 0.65 \
+             of the radius.\n\n\
              **Criterion**, for every entry: the order fitted to the finest four meshes is at least the expected one less \
              {SLACK}, and on the finest mesh the error is at most {COEFFICIENT} × cells^(−expected order). *Expected* is 2, \
-             but 1 for what depends on which cells count as contact: area, stiffness, and the pressure under a circular edge \
-             that cells do not follow.\n\n\
+             but 1 for area, stiffness, and the pressure under a circular edge that cells do not follow.\n\n\
              ![Errors of area, approach, pressure, stiffness and energy against the cells over a contact, and the wave in \
              two directions beside its limits](images/closed_forms.png)\n\n\
              The error with {} cells, and in brackets the order at which it falls:\n\n{}\n",
@@ -55,10 +54,8 @@ impl Report {
         // Writing to a string cannot fail.
         let _ = write!(
             text,
-            "**Verdict: {agreeing} of {} entries agree.** The corrected area is the counted one less {:.4} cells for each side \
-             of a cell along the border of the contact.\n\n",
+            "**Verdict: {agreeing} of {} entries agree.**\n\n",
             self.curves.len(),
-            asperity::patches::Perimeter::AREA_CORRECTION,
         );
         self.square_punch(&mut text);
         self.double_wave(&mut text);
@@ -89,25 +86,14 @@ impl Report {
     }
 
     fn square_punch(&self, text: &mut String) {
-        text.push_str(
-            "### The square punch\n\n\
-             No closed form is known, only numbers: K = π × 0.3667874 E\\*L = 1.152297 E\\*L, the capacity of a square to a unit of \
-             its last digit. The error of the mesh is \
-             of first order, so that each two grids give a better value, 2 K(N) − K(N/2), and each three of these a still \
-             better one (Aitken).\n\n| cells a side | K/E\\*L | 2 K(N) − K(N/2) |\n|---|---|---|\n",
-        );
-        let richardson = self.punch.richardson();
-        let coarse = self.punch.stiffness.len().saturating_sub(3);
-        for (k, (n, stiffness)) in self.punch.stiffness.iter().enumerate().skip(coarse) {
-            let better = k.checked_sub(1).and_then(|k| richardson.get(k));
-            let better = better.map_or(String::new(), |value| format!("{value:.6}"));
-            let _ = writeln!(text, "| {n} | {stiffness:.6} | {better} |");
-        }
+        let finest = self.punch.stiffness.last().map_or(0, |(cells, _)| *cells);
         let limit = self.punch.limit();
         let close = (limit - SQUARE_PUNCH_STIFFNESS).abs() <= PUNCH_CLOSE;
         let _ = write!(
             text,
-            "\nLimit: {limit:.7}. **Verdict: {}** (criterion: within {} of 1.152297).\n\n",
+            "### The square punch\n\n\
+             No closed form is known, only numbers: K = π × 0.3667874 E\\*L = 1.152297 E\\*L, the capacity of a square. Grids of \
+             up to {finest} cells a side, extrapolated, have {limit:.7}. **Verdict: {}** (criterion: within {} of it).\n\n",
             verdict(close),
             scientific(PUNCH_CLOSE, 1),
         );
@@ -122,7 +108,7 @@ impl Report {
              p\\* = √2 πE\\*D/λ on; under a light load each crest is a Hertz contact by itself, and just below p\\* each \
              valley a penny crack. In between there is no closed form.\n\n\
              **Full contact.** At p̄ = {BEYOND} p\\* the pressure is p̄ + p\\* cos cos, at most {:.2} p\\*, and the energy \
-             p\\*DA₀/8. p̄ less the least pressure is the load of full contact on the mesh.\n\n\
+             p\\*DA₀/8. p̄ less the least pressure is the load of full contact on the mesh. Relative errors:\n\n\
              | kernel | nodes a wave | load of full contact | greatest pressure | energy |\n|---|---|---|---|---|\n",
             1.0 + BEYOND,
         );
@@ -133,24 +119,16 @@ impl Report {
                 let _ = writeln!(text, "| {name} | {nodes} | {load} | {peak} | {energy} |");
             }
         }
-        let sentence = |full: &Full| {
-            format!(
-                "{}: greatest pressure {:.6} p\\*, contact full at 1 + {b} of the load found and not at 1 − {b} {}: {}",
-                full.kernel.name(),
-                full.peak,
-                if full.bracketed { "on every grid" } else { "on some grids only" },
-                verdict(full.agrees()),
-                b = scientific(BRACKET, 1),
-            )
-        };
+        let [love, spectral] = &wave.full;
         let _ = write!(
             text,
-            "\nRelative errors. {}; {}, order {:.2}. (Criteria: the spectral kernel has the wave as one of its own, within {}; \
-             Love's second order within 0.2.)\n\n",
-            sentence(&wave.full[1]),
-            sentence(&wave.full[0]),
-            wave.full[0].order(),
+            "\n**Verdict: Love {}, spectral {}** (criteria: contact full at 1 + {bracket} of the load found and not at 1 − \
+             {bracket} on every grid; Love's second order within 0.2, found {:.2}; spectral errors within {}).\n\n",
+            verdict(love.agrees()),
+            verdict(spectral.agrees()),
+            love.order(),
             scientific(EXACT, 1),
+            bracket = scientific(BRACKET, 1),
         );
         let farthest = |limit: &Limit| {
             scientific(limit.ratios.iter().map(|(distance, _)| *distance).fold(0.0, f64::max), 1)
@@ -158,14 +136,14 @@ impl Report {
         let _ = writeln!(
             text,
             "**The two limits.** Corrected area in contact over that of Hertz contacts, π(3P/8π)^⅔, with {} nodes a wave, and \
-             corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, kernel Love, means over four \
-             places of the crest between the nodes. A line in P^⅔ up to P = {} goes to {:.4} at P = 0, one in 1 − P up to 1 − P = {} \
-             to {:.4} at P = 1. **Verdict: contacts {}, holes {}** (criterion: 1 within {CLOSE}).",
+             corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, kernel Love, means over \
+             four places of the crest. Lines in P^⅔ up to P = {} and in 1 − P up to {} go to {:.4} and {:.4} at the limits. \
+             **Verdict: contacts {}, holes {}** (criterion: 1 within {CLOSE}).",
             wave.light.nodes,
             wave.heavy.nodes,
             farthest(&wave.light),
-            wave.light.extrapolated(),
             farthest(&wave.heavy),
+            wave.light.extrapolated(),
             wave.heavy.extrapolated(),
             plural(wave.light.agrees()),
             plural(wave.heavy.agrees()),

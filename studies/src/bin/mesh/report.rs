@@ -7,11 +7,9 @@ use asperity::reference::AreaLoadLaw;
 use asperity_studies::spread::Spread;
 
 use crate::states::{HURST, LOADS, ROLLOFF, State};
-use crate::study::{BAND, CELLS, ENOUGH, Family, REMOVED, Study};
+use crate::study::{BAND, CELLS, Family, REMOVED, Study};
 
-/// The load at which contacts are smallest, and the one at which κ of different spectra is told apart best, with many
-/// contacts that are still apart.
-const LIGHTEST: usize = 0;
+/// The load at which κ of different spectra is told apart best, with many contacts that are still apart.
 const MIDDLE: usize = 2;
 
 impl Study {
@@ -23,13 +21,12 @@ impl Study {
         format!(
             "## Mesh and spectrum\n\n\
              Study `mesh`: how much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend on the mesh?\n\n\
-             Self-affine surfaces as those of the section on rough contact (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel \
-             Love), {} seeds, {} loads, of which the tables show every second; *cells* are those to the shortest wave, λₛ. The surface of a seed \
-             is the same on every mesh. *Corrected* is the \
-             area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
-             (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is \
-             Richardson's extrapolation of κ as cells are counted from the finest two meshes, surface by surface: 2 κ(Δ/2) − κ(Δ). \
-             Mean ± standard deviation of one surface. In the picture the numbers are p̄/(E\\* h′).\n\n\
+             Self-affine surfaces (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel Love), {} seeds, the same on every mesh, \
+             {} loads, of which the tables show every second; *cells* are those to the shortest wave, λₛ. *Corrected* is the area \
+             less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
+             (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is Richardson's \
+             extrapolation from the finest two meshes, 2 κ(Δ/2) − κ(Δ). Mean ± standard deviation of one surface. In the picture \
+             the numbers are p̄/(E\\* h′).\n\n\
              ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the width of the \
              spectrum](images/mesh.png)",
             self.surfaces,
@@ -65,65 +62,34 @@ impl Study {
             .zip(&self.meshes)
             .map(|(part, f)| format!("{:.0} % with {}", 100.0 * part, f.mesh.cells))
             .collect();
-        let sense = match taken.iter().all(|part| *part > 1.0 && *part < 2.0) {
-            true => {
-                ": always too much, as on a Hertz contact, but always closer to the limit than \
-                the counted area"
-            }
-            false => "",
-        };
         let factor = Spread::of(taken.iter().map(|part| Perimeter::AREA_CORRECTION / part));
         let limits = || (0..LOADS.len()).map(|load| self.limit(load).mean);
         let (bgt, persson) = (AreaLoadLaw::BUSH_GIBSON_THOMAS, AreaLoadLaw::PERSSON);
         let between = limits().all(|kappa| kappa > persson && kappa < bgt);
         let _ = write!(
             text,
-            "\n**Verdict on the correction: {}.** Criterion: on every mesh, on the mean over the loads, it leaves at most {:.0} % of \
-             the excess of the counted area, with either sign. It removes {} cells{sense}. The \
-             factor that fits these surfaces is {} in the place of {:.4}, \
-             mean and deviation over the meshes.\n\n\
-             Under the lightest load κ is {} with {} cells, counted, and {} in the limit: a κ \
-             near or above √(2π) = {bgt:.3} on a coarse mesh is an artefact of the mesh. {} between √(2π) and Persson's √(8/π) = {persson:.3} {}.",
+            "\n**Verdict on the correction: {}** (criterion: on every mesh, on the mean over the loads, at most {:.0} % of the \
+             excess of the counted area is left, with either sign). It removes {} cells. The factor that fits these surfaces is \
+             {} in the place of {:.4}.\n\n\
+             {} between √(2π) = {bgt:.3} and Persson's √(8/π) = {persson:.3} {}; a κ near or above √(2π) on a coarse mesh is an \
+             artefact of the mesh.",
             if agrees { "agrees" } else { "differs" },
             100.0 * (1.0 - REMOVED),
             parts.join(", "),
             factor.decimals(3),
             Perimeter::AREA_CORRECTION,
-            self.kappa_of(self.meshes.first()),
-            self.meshes.first().map_or(0, |f| f.mesh.cells),
-            self.limit(LIGHTEST).decimals(2),
             if between { "The limit is" } else { "The limit is not" },
             if between { "at every load" } else { "at each load" },
         );
         text
     }
 
-    fn kappa_of(&self, family: Option<&Family>) -> String {
-        family.map_or(String::new(), |family| family.spread(LIGHTEST, State::kappa).decimals(2))
-    }
-
     fn choice(&self) -> String {
-        let share = 100.0 * ENOUGH;
-        let cells = |found: Option<usize>| {
-            found.map_or("no mesh of these".to_string(), |cells| {
-                format!("{cells} cells to λₛ or more")
-            })
-        };
-        let counted = self.coarsest(|f, load| self.left(f, load)[0].abs() <= ENOUGH);
-        let corrected = self.coarsest(|f, load| self.left(f, load)[1].abs() <= ENOUGH);
-        let gap = self.coarsest(|f, load| self.beside_finest(f, load)[0].abs() <= ENOUGH);
-        let stiffness = self.coarsest(|f, load| self.beside_finest(f, load)[1].abs() <= ENOUGH);
-        let mut text = format!(
-            "### What to choose\n\n\
-             Within {share:.0} % at all these loads, on the mean over the surfaces, of the limit for κ and of the finest mesh for the \
-             others: area as counted on {}, corrected area on {}, mean gap on {}, interfacial stiffness on {}. Greatest error of each \
-             mesh over the loads, in per cent:\n\n\
-             | cells | κ counted | κ corrected | mean gap | stiffness |\n|---|---|---|---|---|\n",
-            cells(counted),
-            cells(corrected),
-            cells(gap),
-            cells(stiffness),
-        );
+        let mut text = "### What to choose\n\n\
+            Greatest error of each mesh over the loads, on the mean over the surfaces, in per cent of the limit for κ and of the \
+            finest mesh for the others:\n\n\
+            | cells | κ counted | κ corrected | mean gap | stiffness |\n|---|---|---|---|---|\n"
+            .to_string();
         let worst = |value: &dyn Fn(usize) -> f64| {
             let each = (0..LOADS.len()).map(value);
             let worst =
@@ -146,11 +112,11 @@ impl Study {
             );
         }
         text.push_str(
-            "\nConclusion: mean gap and stiffness are right on any mesh that represents the shortest wave. For the area use the \
-             corrected one, or better use two meshes and extrapolate the counted area, 2 κ(Δ/2) − κ(Δ). Refine by Fourier \
-             interpolation (`Topography::resample`), and only if the spectrum really ends at λₛ: the area of a measured surface \
-             that is rough down to its pixels depends on the pixel. If surfaces differ by more than the error of the mesh, as \
-             under light loads, more surfaces help more than a finer mesh.",
+            "\nMean gap and stiffness are right on any mesh that represents the shortest wave. For the area use the corrected one, \
+             or better two meshes and the extrapolation 2 κ(Δ/2) − κ(Δ). Refine by Fourier interpolation \
+             (`Topography::resample`), and only if the spectrum really ends at λₛ: the area of a measured surface that is rough \
+             down to its pixels depends on the pixel. If surfaces differ by more than the error of the mesh, as under light \
+             loads, more surfaces help more than a finer mesh.",
         );
         text
     }
@@ -179,8 +145,8 @@ impl Study {
         let _ = write!(
             text,
             "\nV. A. Yastrebov, G. Anciaux and J.-F. Molinari (J. Mech. Phys. Solids 107 (2017) 469) find that at a given \
-             p̄/(E\\* h′) the area falls with the logarithm of Nayak's parameter. Here, at p̄/(E\\* h′) = {}, dκ/d(ln α) = {} (with \
-             its standard error over all surfaces). **Verdict: {}** (criterion: negative by more than two standard errors).",
+             p̄/(E\\* h′) the area falls with the logarithm of Nayak's parameter. Here, at p̄/(E\\* h′) = {}, dκ/d(ln α) = {} \
+             (standard error over all surfaces). **Verdict: {}** (criterion: negative by more than two standard errors).",
             LOADS[MIDDLE],
             slope.decimals(3),
             if trend.falls() { "agrees" } else { "not resolved" },

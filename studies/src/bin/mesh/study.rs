@@ -13,8 +13,6 @@ pub(crate) const BAND: usize = 8;
 pub(crate) const CELLS: usize = 8;
 pub(crate) const MESHES: [usize; 4] = [4, 8, 16, 32];
 pub(crate) const BANDS: [usize; 5] = [2, 4, 8, 16, 32];
-/// What a mesh may leave of κ, of the mean gap and of the stiffness, relative, to be called fine enough.
-pub(crate) const ENOUGH: f64 = 0.02;
 /// The part of what counting cells gives too much that the correction must remove: on a Hertz contact some 80 %.
 pub(crate) const REMOVED: f64 = 0.75;
 
@@ -114,13 +112,6 @@ impl Study {
                 family.relative(finest, load, |s| s.stiffness),
             ]
         })
-    }
-
-    /// The coarsest mesh on which every load meets a condition, as do all finer ones.
-    pub(crate) fn coarsest(&self, meets: impl Fn(&Family, usize) -> bool) -> Option<usize> {
-        let all = |family: &&Family| (0..LOADS.len()).all(|load| meets(family, load));
-        let enough = self.meshes.iter().rev().take_while(all);
-        enough.last().map(|family| family.mesh.cells)
     }
 
     /// What the correction takes away over what counting cells gives too much, on the mean over the loads; 1 would be

@@ -129,20 +129,17 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
     let mut text = format!(
         "## Other programs\n\n\
          Study `peers`: other programs on the same surfaces, loads and half-spaces. `studies/src/bin/peers/peers.sh` installs and \
-         runs them and stores their results in `peers.csv` beside it. The study solves the same problems with asperity, and stops \
-         if its results differ from those that the table was compared with.\n\n\
-         * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py` beside the table: the influence matrix entry \
-         by entry, LU on the contact set, and the set changed until the conditions of contact hold to rounding. It decides who is \
-         right, on grids of up to 1024 nodes.\n\
+         runs them; the study stops if its own results differ from those that the stored ones were compared with.\n\n\
+         * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py`: the influence matrix entry by entry, LU on \
+         the contact set, and the set changed until the conditions of contact hold to rounding, on grids of up to 1024 nodes.\n\
          * **Half-spaces**: free with Love's kernel (`Boussinesq`); periodic with 2/(E\\*|q|) (`Spectral`).\n\
-         * **Surfaces**: the first eight on 128 × 128 nodes; then grids that are not square, with cells of 3 : 1, and with an \
-         odd number of nodes along y or x. `surfaces.rs` there makes them.\n\
+         * **Surfaces**: eight on 128 × 128 nodes; others on grids that are not square, with cells of 3 : 1, and with an odd number \
+         of nodes along y or x.\n\
          * **Loads**: p̄ = {} E\\* times the rms gradient between nodes. An entry is one surface under all three.\n\
          * **Criterion**, for every entry: at each load the same nodes under pressure, pressures within {} of the greatest, mean \
          gaps within {} Sq, and stiffness within {} of theirs by differences, from a second load larger by 10⁻⁵, unless a node \
          joins in between.\n\n\
-         The worst of the entries that agree; differences of pressure are over the greatest, those of the mean gap over Sq, those \
-         of stiffness relative:\n\n{table}\n\
+         The worst of the entries that agree, in these measures:\n\n{table}\n\
          **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.** The \
          exception:\n",
         programs.join(", "),
@@ -169,12 +166,8 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
         });
         let _ = write!(
             text,
-            "\n* **{program}, {half_space}, {surface}**: {} of {} loads solved, {} nodes differ, under at most {} of the mean \
-             pressure, and pressures by {}; {judged}.",
-            cell.rows.len(),
-            LOADS.len(),
+            "\n* **{program}, {half_space}, {surface}**: {} nodes differ, and pressures by {}; {judged}.",
             cell.nodes(),
-            scientific(cell.greatest(|row| row.least_certain), 1),
             scientific(cell.pressure(), 1),
         );
     }
@@ -188,8 +181,8 @@ fn shortest_waves(waves: &[Wave]) -> String {
     let each = waves.iter().filter(wrong).map(|wave| {
         let k = wave.wave_number as f64;
         format!(
-            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of 2/(E\\*|q|); the mean of 1/{k} and \
-             1/{} would be {:.6}",
+            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of 2/(E\\*|q|); the mean of 1/{k} and 1/{} \
+             would be {:.6}",
             wave.program,
             wave.nx,
             wave.ny,

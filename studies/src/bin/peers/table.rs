@@ -17,8 +17,6 @@ pub(crate) struct Row {
     pub(crate) surface: String,
     /// Nodes with pressure in one of the solutions only.
     pub(crate) nodes_different: usize,
-    /// Greatest pressure at such a node over the mean.
-    pub(crate) least_certain: f64,
     /// Greatest at any node, over the greatest pressure.
     pub(crate) pressure_difference: f64,
     /// Of the mean gap, over the rms height.
@@ -84,7 +82,6 @@ pub(crate) fn read() -> Result<Vec<Row>, Failure> {
                     half_space: line.3.clone(),
                     surface: line.4.clone(),
                     nodes_different: line.8,
-                    least_certain: line.9,
                     pressure_difference: line.10,
                     gap_difference: (line.11 - line.12).abs() / rms_height,
                     stiffness_difference: (!joined).then_some(difference),

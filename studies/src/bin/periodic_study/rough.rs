@@ -54,7 +54,6 @@ pub(crate) struct Study {
     /// Surface by surface, and load by load.
     pub(crate) states: Vec<State>,
     laws: AreaLoadLaw,
-    pub(crate) convolutions: f64,
 }
 
 fn failed(error: impl Into<asperity::Error>) -> Failure {
@@ -68,7 +67,7 @@ impl Study {
         }
         let grid = Grid::square(options.nodes, 1.0).map_err(failed)?;
         let bar = ProgressBar::new(options.surfaces * options.loads as u64);
-        let (mut states, mut convolutions) = (Vec::new(), 0.0);
+        let mut states = Vec::new();
         let mut rms_gradient = 0.0;
         for seed in 1..=options.surfaces {
             let height = Amplitude::RmsHeight(RMS_HEIGHT);
@@ -86,8 +85,6 @@ impl Study {
             for solution in solver.sweep(pressures.map(ContactTarget::Load)) {
                 let solution = solution.map_err(failed)?;
                 let (state, map) = (solution.contact, &solution.fields.contact_map);
-                let effort = solution.effort;
-                convolutions += effort.convolutions as f64 + effort.coarse_convolutions;
                 states.push(State {
                     seed,
                     load: state.load / rms_gradient,

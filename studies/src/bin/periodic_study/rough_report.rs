@@ -5,7 +5,7 @@ use std::fmt::Write;
 use asperity::reference::AreaLoadLaw;
 use asperity_studies::spread::Spread;
 
-use crate::rough::{CUTOFF, FIT, HURST, LIGHT, State, Study};
+use crate::rough::{CUTOFF, FIT, HURST, LIGHT, Study};
 
 /// By how much the area that is still open under the greatest load may differ from that of Persson's theory, relative.
 const OPEN: f64 = 0.1;
@@ -31,10 +31,6 @@ impl Study {
         let open = self.spread(last, |s| 1.0 - s.area);
         let open_of_persson = 1.0 - self.persson(at_last);
         let off = open.mean / open_of_persson - 1.0;
-        let lightest = |area: fn(&State) -> f64| {
-            let first = self.at(0).next().map_or(f64::NAN, |s| s.load);
-            Spread::of(self.at(0).map(|s| area(s) / first)).decimals(2)
-        };
         let upper = (0..self.loads).filter(|load| {
             let load = self.at(*load).next().map_or(f64::NAN, |s| s.load);
             load >= 0.1 * FIT.1 && load <= FIT.1
@@ -44,34 +40,24 @@ impl Study {
             "### Rough contact against theory\n\n\
              ![Area, mean gap and interfacial stiffness of self-affine surfaces against load](images/periodic_study.png)\n\n\
              {} self-affine surfaces of {n} × {n} nodes (H = {HURST}, roll-off at a quarter and short cut-off at 1/32 of the side, \
-             {:.0} cells), kernel {}; {} loads each; {:.0} convolutions in all. *Corrected* is \
-             the area without the excess of whole cells along the edge of the contact, (π − 1 + ln 2)/24 of a cell for each side.\n\n{}\n\
-             Mean ± standard deviation of one surface. With p̄/(E\\* h′) from {} to {}, p̄ ∝ exp(−ḡ/(γ h_rms)) fits with γ = {}, 1/γ = \
-             {:.2}.\n\n\
-             * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected; under the lightest load {} \
-             and {}. Bush, Gibson and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. The \
-             corrected κ is between the two at every light load: {} (criterion: the mean of the surfaces, each \
-             load).\n\
-             * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the greatest load the \
-             open area is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: within {:.0} %).\n\
-             * **Mean gap.** Between the first few contacts and a fifth of the area in contact, p̄ ∝ exp(−ḡ/(γ h_rms)): {} (criterion: \
-             γ from {} to {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness.\n\
-             * **Stiffness.** The exact tangent, not a difference of gaps: K_i h_rms/(A₀ p̄) is {} over the upper decade of the \
-             same loads, and 1/γ = {:.2}. They differ only because the curve is not exactly exponential.",
+             {:.0} cells), kernel {}; {} loads each. *Corrected* is the area without the excess of whole cells along the edge of the \
+             contact. Mean ± standard deviation of one surface:\n\n{}\n\
+             * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected. Bush, Gibson and Thomas \
+             have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. The corrected κ is between the two at every \
+             light load: {} (criterion: the mean of the surfaces, each load).\n\
+             * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the greatest load \
+             the open area is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: within {:.0} %).\n\
+             * **Mean gap.** With p̄/(E\\* h′) from {} to {}, p̄ ∝ exp(−ḡ/(γ h_rms)) fits with γ = {}: {} (criterion: from {} to \
+             {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness.\n\
+             * **Stiffness.** K_i h_rms/(A₀ p̄) is {} over the upper decade of the same loads, and 1/γ = {:.2}, because the curve is \
+             not exactly exponential.",
             self.surfaces,
             CUTOFF * self.nodes as f64,
             self.kernel.name(),
             self.loads,
-            self.convolutions,
             self.table(),
-            FIT.0,
-            FIT.1,
-            gamma.decimals(3),
-            1.0 / gamma.mean,
             counted.decimals(2),
             corrected.decimals(2),
-            lightest(|s| s.area),
-            lightest(|s| s.corrected),
             verdict(between),
             open.decimals(4),
             open_of_persson,
@@ -79,6 +65,9 @@ impl Study {
             if off < 0.0 { "less" } else { "more" },
             verdict(off.abs() <= OPEN),
             100.0 * OPEN,
+            FIT.0,
+            FIT.1,
+            gamma.decimals(3),
             verdict(gamma.mean >= GAMMA.0 && gamma.mean <= GAMMA.1),
             GAMMA.0,
             GAMMA.1,
