@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::cerruti::Cerruti;
 use crate::coulomb::Coulomb;
-use crate::joints::{FRICTION, Pressed, SIDE};
+use crate::joints::{FRICTION, Pressed, SIDE, ranges};
 
 /// Steps of pressing, and of a quarter of a cycle.
 const RAMP: usize = 16;
@@ -26,34 +26,38 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         text,
         "\n### A rigid surface on one body\n\nThe same, but a rigid surface on one body: tractions move the surface normally too, and pressing \
          leaves tractions. Pressed with friction in {RAMP} steps, then sheared between −U and U. All over what the \
-         path gives: T and D of the first loading, and of the second cycle, at U = {} times κμδ.\n\n\
+         path gives: T and D of the first loading, and of the second cycle, at U = {} times κμδ, of several seeds from the least to \
+         the greatest.\n\n\
          | surface | ν | β | T, first loading | D, first loading | T, second cycle | D, second cycle |\n|---|---|---|---|---|---|---|\n",
         AMPLITUDES.map(|amplitude| amplitude.to_string()).join(", ")
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
-    for (pressed, ratio) in [
-        (Pressed::rough(1, nodes), 0.3),
-        (Pressed::rough(2, nodes), 0.3),
-        (Pressed::rough(3, nodes), 0.3),
-        (Pressed::rough(4, nodes), 0.3),
-        (Pressed::sphere(nodes), 0.3),
-        (Pressed::rough(1, nodes), 0.0),
-        (Pressed::rough(1, nodes), 0.45),
-        (Pressed::sphere(nodes), 0.45),
+    let sphere = || vec![Pressed::sphere(nodes)];
+    let rough = |seeds: &[u64]| seeds.iter().map(|&seed| Pressed::rough(seed, nodes)).collect();
+    for (name, ratio, surfaces) in [
+        ("rough, 4 seeds", 0.3, rough(&[1, 2, 3, 4])),
+        ("sphere", 0.3, sphere()),
+        ("rough", 0.0, rough(&[1])),
+        ("rough", 0.45, rough(&[1])),
+        ("sphere", 0.45, sphere()),
     ] {
-        let pressed = pressed.map_err(failed)?;
-        let mut columns: [Vec<String>; 4] = Default::default();
+        let mut columns: [Vec<Vec<f64>>; 4] = Default::default();
         let mut coupling = 0.0;
-        for amplitude in AMPLITUDES {
-            eprintln!("{}, ν = {ratio}, rigid against elastic, {amplitude}", pressed.name);
-            let (beta, found) = cycle(&pressed, ratio, amplitude)?;
-            coupling = beta;
-            for ((column, value), digits) in columns.iter_mut().zip(found).zip([3, 2, 3, 3]) {
-                column.push(format!("{value:.digits$}"));
+        for pressed in surfaces {
+            let pressed = pressed.map_err(failed)?;
+            let mut joint: [Vec<f64>; 4] = Default::default();
+            for amplitude in AMPLITUDES {
+                eprintln!("{name}, ν = {ratio}, rigid against elastic, {amplitude}");
+                let (beta, found) = cycle(&pressed, ratio, amplitude)?;
+                coupling = beta;
+                joint.iter_mut().zip(found).for_each(|(of, value)| of.push(value));
             }
+            columns.iter_mut().zip(joint).for_each(|(column, of)| column.push(of));
         }
-        let columns = columns.map(|column| column.join(", ")).join(" | ");
-        let _ = writeln!(text, "| {} | {ratio} | {coupling:.3} | {columns} |", pressed.name);
+        let digits = [3, 2, 3, 3];
+        let columns: Vec<String> =
+            columns.iter().zip(digits).map(|(column, digits)| ranges(column, digits)).collect();
+        let _ = writeln!(text, "| {name} | {ratio} | {coupling:.3} | {} |", columns.join(" | "));
     }
     Ok(())
 }

@@ -12,9 +12,21 @@ pub(crate) const FRICTION: f64 = 0.3;
 /// Displacements, over that at which the joint slides.
 pub(crate) const LEVELS: [f64; 5] = [0.03, 0.1, 0.3, 0.6, 0.9];
 
+/// The values of several joints at each level: the least and the greatest, where they differ.
+pub(crate) fn ranges(joints: &[Vec<f64>], digits: usize) -> String {
+    let levels = joints.first().map_or(0, Vec::len);
+    let each = (0..levels).map(|level| {
+        let of = || joints.iter().map(|joint| joint[level]);
+        let (least, most) =
+            (of().fold(f64::INFINITY, f64::min), of().fold(f64::NEG_INFINITY, f64::max));
+        let [least, most] = [least, most].map(|value| format!("{value:.digits$}"));
+        if least == most { least } else { format!("{least}–{most}") }
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
 /// A surface with its path.
 pub(crate) struct Pressed {
-    pub(crate) name: String,
     pub(crate) history: History,
     /// Nodes in the order in which they touch.
     pub(crate) order: Vec<usize>,
@@ -28,7 +40,7 @@ pub(crate) struct Pressed {
 
 impl Pressed {
     /// A surface under the load between its events `nodes` and `nodes + 1`.
-    fn new(name: String, heights: HeightMap, nodes: usize) -> Result<Self, Error> {
+    fn new(heights: HeightMap, nodes: usize) -> Result<Self, Error> {
         let grid = Grid::square(SIDE, SIDE as f64)?;
         let kernel = Boussinesq::new(grid, 1.0)?;
         let mut path = LoadingSolver::builder(&heights, &kernel).max_nodes(nodes + 1).build()?;
@@ -40,19 +52,19 @@ impl Pressed {
         let mut order = path.contact_order();
         order.truncate(state.contact.contact_nodes);
         let gap = path.problem().initial_gap().to_vec();
-        Ok(Self { name, history, order, gap, load, pressure })
+        Ok(Self { history, order, gap, load, pressure })
     }
 
     pub(crate) fn sphere(nodes: usize) -> Result<Self, Error> {
         let grid = Grid::square(SIDE, SIDE as f64)?;
         let sphere = Paraboloid::new(10.0 * SIDE as f64)?;
-        Self::new("sphere".to_string(), HeightMap::sample(&sphere, &grid)?, nodes)
+        Self::new(HeightMap::sample(&sphere, &grid)?, nodes)
     }
 
     pub(crate) fn rough(seed: u64, nodes: usize) -> Result<Self, Error> {
         let grid = Grid::square(SIDE, SIDE as f64)?;
         let surface = SelfAffine::new(0.8, 8.0, 2.0, Amplitude::RmsHeight(0.3), seed)?;
-        Self::new(format!("rough, seed {seed}"), HeightMap::sample(&surface, &grid)?, nodes)
+        Self::new(HeightMap::sample(&surface, &grid)?, nodes)
     }
 
     /// Ridges four times as long as wide, along x or along y: a rough surface whose cells were four times as wide as
@@ -61,10 +73,7 @@ impl Pressed {
         let stretched = Grid::new(SIDE, SIDE, 0.5, 2.0)?;
         let surface = SelfAffine::new(0.8, 16.0, 4.0, Amplitude::RmsHeight(0.3), seed)?;
         let heights = surface.heights(&stretched)?;
-        let (heights, name) = match along_x {
-            true => (heights, "ridges 4:1 along T"),
-            false => (heights.transpose(), "ridges 4:1 across T"),
-        };
-        Self::new(name.to_string(), HeightMap::new(heights)?, nodes)
+        let heights = if along_x { heights } else { heights.transpose() };
+        Self::new(HeightMap::new(heights)?, nodes)
     }
 }

@@ -9,7 +9,7 @@ use nalgebra::DVector;
 
 use crate::cerruti::Cerruti;
 use crate::coulomb::Coulomb;
-use crate::joints::{FRICTION, LEVELS, Pressed, SIDE};
+use crate::joints::{FRICTION, LEVELS, Pressed, SIDE, ranges};
 
 /// Steps between two levels.
 const STEPS: usize = 6;
@@ -20,30 +20,40 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         "\n### Bodies alike, without the assumption of one direction\n\nSurfaces of {SIDE} × {SIDE} nodes, of which {nodes} are in contact, \
          μ = {FRICTION}, sheared once by an incremental solution of Coulomb's law on all nodes: tractions along both directions within discs, \
          influences of Cerruti's half-space. β is 0. Tangential load and dissipation over those that the path gives, at displacements \
-         U over κμδ; the last column is what acts across, Σ|q_y|/Σ|q_x| at 0.6.\n\n\
+         U over κμδ, of several seeds from the least to the greatest; the last column is what acts across, Σ|q_y|/Σ|q_x| at 0.6.\n\n\
          | surface | ν | T at U = 0.03, 0.1, 0.3, 0.6, 0.9 | D | across |\n|---|---|---|---|---|\n"
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
+    let sphere = || vec![Pressed::sphere(nodes)];
+    let rough = |seeds: &[u64]| seeds.iter().map(|&seed| Pressed::rough(seed, nodes)).collect();
+    let ridges = |along_x| vec![Pressed::ridges(5, along_x, nodes)];
     let made = [
-        (Pressed::sphere(nodes), &[0.0, 0.3, 0.5][..]),
-        (Pressed::rough(1, nodes), &[0.3, 0.5]),
-        (Pressed::rough(2, nodes), &[0.3, 0.5]),
-        (Pressed::rough(4, nodes), &[0.3]),
-        (Pressed::ridges(5, true, nodes), &[0.3]),
-        (Pressed::ridges(5, false, nodes), &[0.3]),
+        ("sphere", 0.0, sphere()),
+        ("sphere", 0.3, sphere()),
+        ("sphere", 0.5, sphere()),
+        ("rough, 3 seeds", 0.3, rough(&[1, 2, 4])),
+        ("rough, 2 seeds", 0.5, rough(&[1, 2])),
+        ("ridges 4:1 along T", 0.3, ridges(true)),
+        ("ridges 4:1 across T", 0.3, ridges(false)),
     ];
-    for (pressed, ratios) in made {
-        let pressed = pressed.map_err(failed)?;
-        for &ratio in ratios {
-            eprintln!("{}, ν = {ratio}", pressed.name);
-            let row = shear(&pressed, ratio)?;
-            let _ = writeln!(text, "| {} | {ratio} | {row} |", pressed.name);
+    for (name, ratio, surfaces) in made {
+        let mut found: [Vec<Vec<f64>>; 3] = Default::default();
+        for pressed in surfaces {
+            eprintln!("{name}, ν = {ratio}");
+            for (of, values) in found.iter_mut().zip(shear(&pressed.map_err(failed)?, ratio)?) {
+                of.push(values);
+            }
         }
+        let [forces, losses, across] = found;
+        let (forces, losses, across) =
+            (ranges(&forces, 4), ranges(&losses, 3), ranges(&across, 0));
+        let _ = writeln!(text, "| {name} | {ratio} | {forces} | {losses} | {across} % |");
     }
     Ok(())
 }
 
-fn shear(pressed: &Pressed, ratio: f64) -> Result<String, Failure> {
+/// T and D at each level, and what acts across, in per cent.
+fn shear(pressed: &Pressed, ratio: f64) -> Result<[Vec<f64>; 3], Failure> {
     let failed = |error: asperity::Error| Failure::new("cannot shear a joint", error);
     let friction = Friction::between(FRICTION, (1.0, ratio), Some((1.0, ratio))).map_err(failed)?;
     let bed = Bed::new(&pressed.history).map_err(failed)?;
@@ -70,11 +80,11 @@ fn shear(pressed: &Pressed, ratio: f64) -> Result<String, Failure> {
         from = level;
         let theory =
             joint.cycle_of_displacement(level * joint.sliding_displacement()).map_err(failed)?;
-        forces.push(format!("{:.4}", coulomb.force() / theory.amplitude));
-        losses.push(format!("{:.3}", lost / (0.25 * theory.dissipation)));
+        forces.push(coulomb.force() / theory.amplitude);
+        losses.push(lost / (0.25 * theory.dissipation));
         if level == 0.6 {
             across = coulomb.across();
         }
     }
-    Ok(format!("{} | {} | {:.0} %", forces.join(", "), losses.join(", "), 100.0 * across))
+    Ok([forces, losses, vec![100.0 * across]])
 }
