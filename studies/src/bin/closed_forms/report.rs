@@ -52,11 +52,8 @@ impl Report {
         );
         let agreeing = self.curves.iter().filter(|curve| curve.agrees()).count();
         // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "**Verdict: {agreeing} of {} entries agree.**\n\n",
-            self.curves.len(),
-        );
+        let _ =
+            write!(text, "**Verdict: {agreeing} of {} entries agree.**\n\n", self.curves.len(),);
         self.square_punch(&mut text);
         self.double_wave(&mut text);
         text

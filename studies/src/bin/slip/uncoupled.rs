@@ -45,8 +45,7 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
             }
         }
         let [forces, losses, across] = found;
-        let (forces, losses, across) =
-            (ranges(&forces, 4), ranges(&losses, 3), ranges(&across, 0));
+        let (forces, losses, across) = (ranges(&forces, 4), ranges(&losses, 3), ranges(&across, 0));
         let _ = writeln!(text, "| {name} | {ratio} | {forces} | {losses} | {across} % |");
     }
     Ok(())
