@@ -106,7 +106,6 @@ impl Study {
             loads: options.loads,
             states,
             laws: AreaLoadLaw::new(rms_gradient, 1.0).map_err(failed)?,
-            convolutions,
         })
     }
 
