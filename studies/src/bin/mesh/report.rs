@@ -7,7 +7,7 @@ use asperity::reference::AreaLoadLaw;
 use asperity_studies::spread::Spread;
 
 use crate::states::{HURST, LOADS, ROLLOFF, State};
-use crate::study::{BAND, CELLS, Family, REMOVED, Study};
+use crate::study::{BAND, CELLS, REMOVED, Study};
 
 /// The load at which κ of different spectra is told apart best, with many contacts that are still apart.
 const MIDDLE: usize = 2;
