@@ -73,7 +73,7 @@ impl Report {
                 curve.map_or(" – |".to_string(), |curve| {
                     let (_, error) = curve.points[CELLS.len() - 1];
                     let mark = if curve.agrees() { "" } else { " **differs**" };
-                    format!(" {} ({:.2}){mark} |", scientific(error, 2), curve.order())
+                    format!(" {error:.1e} ({:.2}){mark} |", curve.order())
                 })
             });
             // Writing to a string cannot fail.
@@ -111,7 +111,7 @@ impl Report {
         );
         for full in &wave.full {
             if let Some((nodes, errors)) = full.errors.last() {
-                let [load, peak, energy] = errors.map(|error| scientific(error, 2));
+                let [load, peak, energy] = errors.map(|error| format!("{error:.1e}"));
                 let name = full.kernel.name();
                 let _ = writeln!(text, "| {name} | {nodes} | {load} | {peak} | {energy} |");
             }

@@ -80,7 +80,8 @@ fn table(rows: &[Row], surfaces: &[&str]) -> String {
         let cells: Vec<Cell> = cells.collect();
         let agree: Vec<&Cell> = cells.iter().filter(|cell| cell.agrees()).collect();
         let worst = |value: &dyn Fn(&Cell) -> f64| {
-            scientific(agree.iter().map(|cell| value(cell)).fold(0.0, f64::max), 1)
+            let greatest = agree.iter().map(|cell| value(cell)).fold(0.0, f64::max);
+            format!("{greatest:.0e}")
         };
         // Writing to a string cannot fail.
         let _ = writeln!(
