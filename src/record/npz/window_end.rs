@@ -1,4 +1,35 @@
 //! The end of a window in an archive: members that begin with `window_`, beside whole numbers in the parameters.
+//!
+//! * `window_ahead`, `window_plastic`: states that the path has not returned yet, 14 numbers each: `step`, `ix`,
+//!   `iy`, `contact_nodes`, `event`, and the columns from `approach` to `approach_error`; with a hardness 5 more,
+//!   from `yielded_nodes` on.
+//! * `window_watched`, `window_places`, `window_sizes`: with a factor: the nodes that each window watched, places of
+//!   those that touched among them, and 3 numbers for each window: nodes watched, touched, and of these not taken
+//!   back.
+//! * `window_left`, `window_yielded`: 2 numbers each: with a factor, for each node that left, windows before and its
+//!   place in the order of contact; for each window in which nodes yielded, windows before (only with a factor) and
+//!   nodes that yielded.
+//! * `window_scalars`: with a factor, and after a single event without one: approach, load, energy, mean gap,
+//!   stiffness and closing rate at the end of the window.
+//! * `window_joined`, `window_proposed`, `window_row_sums`: without a factor, as all that follow: nodes in the order
+//!   in which the end was solved; nodes that were watched, and row sums of their Schur complement.
+//! * `window_numbers`: spans of the window and its rates \[m\], error of pivots, tolerance, approach \[m\], span that
+//!   the rates serve \[m\], errors of three displacements.
+//! * `window_pressure`, `window_rate`, `window_displacement`, `window_rate_displacement`: pressure in contact at the
+//!   end of the window and its rate, by node index, and the displacements under them; with a factor pressure and rate
+//!   in the order of contact, if nodes yielded in the window.
+//! * `window_sums`, `window_sums_start`, `window_sums_displacement`: row sums of the influence matrix with the
+//!   contact eliminated, unless periodic along x and y.
+//! * `window_directions`, `window_coarse`: search directions of the last solution, unless periodic along x and y and
+//!   no node may yield; contact of the preconditioner's coarse matrix.
+//! * `window_beside_nodes`, `window_beside_pressures`, `window_beside_errors`: as all that follow, once nodes may
+//!   yield: nodes that yielded in the window, their hardness \[Pa\], and three errors of the displacements below.
+//! * `window_gap_sums`, `window_depth_sums`, `window_work_sums`, `window_gap_sums_displacement`,
+//!   `window_depth_sums_displacement`: response of the sums of gaps, plastic depths, and these times the hardness, to
+//!   a displacement of the contact, and the displacements under them (with a hardness of each node
+//!   `window_work_sums_displacement` as well); empty where one follows from another.
+//! * `window_unit_displacement`, `window_load_displacement`: displacement under a pressure of 1, and under their
+//!   hardness, of the nodes that yielded before the window.
 
 use std::io::{Seek, Write};
 
