@@ -112,9 +112,9 @@ fn quadrature(text: &mut String) -> Result<(), Error> {
     }
     let _ = write!(
         text,
-        "\n**Coefficients.** `studies/src/bin/peers/layered_cells.py` integrates the symbol of {bodies} bodies, soft, stiff and on a rigid \
-         base, over all wavevectors, without the tables of this crate. The greatest difference in {} coefficients is {greatest:.0e} of \
-         C(0, 0).\n",
+        "\n**Coefficients.** `studies/src/bin/peers/layered_cells.py` integrates the symbol of {bodies} bodies, soft, \
+         stiff and on a rigid base, over all wavevectors, without the tables of this crate. The greatest difference in \
+         {} coefficients is {greatest:.0e} of C(0, 0).\n",
         lines.len()
     );
     Ok(())
@@ -126,9 +126,10 @@ fn padded(text: &mut String) -> Result<(), Error> {
     let radius = 400.0;
     let _ = write!(
         text,
-        "\n**Free and padded.** A sphere with a contact some 40 cells wide on a free grid of {n}² cells, and on a periodic grid of so many \
-         times the side, at the same load: relative difference of the greatest pressure. Images of a sphere in the period L change it \
-         by some (a/L)³; those of a layer on a rigid base are not felt.\n\n\
+        "\n**Free and padded.** A sphere with a contact some 40 cells wide on a free grid of {n}² cells, and on a \
+         periodic grid of so many times the side, at the same load: relative difference of the greatest pressure. \
+         Images of a sphere in the period L change it by some (a/L)³; those of a layer on a rigid base are not \
+         felt.\n\n\
          | body | 1 | 2 | 4 | 8 |\n|---|---:|---:|---:|---:|\n"
     );
     let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
@@ -226,10 +227,10 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
     }
     let _ = write!(
         text,
-        "\n**Iterations without a factor.** A self-affine surface (H = 0.8, shortest wavelength 8 cells) on {n}² nodes with a free \
-         boundary; thicknesses in cells. At each area fraction: convolutions of a single load from scratch to 10⁻¹⁰, with its stiffness; \
-         and convolutions an event over the first {STRETCH} events of a path from there (`ConjugateGradient`), with the windows taken \
-         back.\n\n\
+        "\n**Iterations without a factor.** A self-affine surface (H = 0.8, shortest wavelength 8 cells) on {n}² nodes \
+         with a free boundary; thicknesses in cells. At each area fraction: convolutions of a single load from scratch \
+         to 10⁻¹⁰, with its stiffness; and convolutions an event over the first {STRETCH} events of a path from there \
+         (`ConjugateGradient`), with the windows taken back.\n\n\
          | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{rows}"
     );
     Ok(())
@@ -309,8 +310,8 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
     let (mut areas, mut stiffnesses) = (Vec::new(), Vec::new());
     let _ = write!(
         text,
-        "\n**Coats on steel.** A self-affine surface of {n} × {n} nodes on 1 mm × 1 mm (Sq 1 µm, shortest wavelength 8 cells) against steel \
-         with a coat of 20 µm, 2.6 cells, to 30 % contact:\n\n\
+        "\n**Coats on steel.** A self-affine surface of {n} × {n} nodes on 1 mm × 1 mm (Sq 1 µm, shortest wavelength 8 \
+         cells) against steel with a coat of 20 µm, 2.6 cells, to 30 % contact:\n\n\
          | body | promise | events | nodes that left | load at 10 % | K_i there |\n|---|---|---:|---:|---:|---:|\n"
     );
     for (name, colour, kernel) in bodies {

@@ -126,8 +126,8 @@ fn metals(directory: &Path, text: &mut String) -> Result<Vec<PathBuf>, Failure> 
     // Writing to a text cannot fail.
     let _ = write!(
         text,
-        "\nStudy `yielding`, which also draws the pictures of [Metals that yield](metals_that_yield.md): there {} nodes touch and \
-         {} yield up to 20 % contact, under {:.1} kN; without a hardness the load is {:.0} kN.\n",
+        "\nStudy `yielding`, which also draws the pictures of [Metals that yield](metals_that_yield.md): there {} \
+         nodes touch and {} yield up to 20 % contact, under {:.1} kN; without a hardness the load is {:.0} kN.\n",
         count(ContactEvent::Touch),
         count(ContactEvent::Yield),
         load / 1e3,
@@ -148,9 +148,10 @@ fn sphere(text: &mut String) -> Result<(), Error> {
     let load = std::f64::consts::PI.powi(3) * f64::powi(hardness, 3) / 6.0;
     let beyond = [(1.2, 1.31208), (1.5, 1.81525), (2.0, 2.72037), (3.0, 4.69615)];
     text.push_str(
-        "\n### A rigid sphere\n\nThe first node yields at the approach δ_y = R (πH/2E*)² under W_y = π³R²H³/6E*² (Hertz). Beyond, the \
-         contact has no closed form; the loads are those of 800 rings of exact influence, extrapolated (R = 1, E* = 1, H = 0.1). \
-         Errors fall with the square of the cell, less evenly where few cells are elastic.\n\n\
+        "\n### A rigid sphere\n\nThe first node yields at the approach δ_y = R (πH/2E*)² under W_y = π³R²H³/6E*² \
+         (Hertz). Beyond, the contact has no closed form; the loads are those of 800 rings of exact influence, \
+         extrapolated (R = 1, E* = 1, H = 0.1). Errors fall with the square of the cell, less evenly where few cells \
+         are elastic.\n\n\
          | nodes | δ_y found / exact | W/W_y at δ = 1.2 δ_y | 1.5 δ_y | 2 δ_y | 3 δ_y |\n|---|---|---|---|---|---|\n",
     );
     let surface = Paraboloid::new(1.0)?;
@@ -192,9 +193,10 @@ fn tamaas(text: &mut String) {
     // Writing to a text cannot fail.
     let _ = write!(
         text,
-        "\n### tamaas with a limit of pressure\n\n`KatoSaturated` of tamaas 2.9 with a tolerance of 10⁻¹², on a periodic half-space; \
-         asperity follows the path to the same mean pressure. On {surfaces} rough surfaces of 64² and 128² nodes, with H/(E* h′) from \
-         0.02 to 1 and mean pressures from 0.05 to 0.9 H, {other} nodes are in contact or yielded in one and not in the other, and \
-         pressures differ by at most {greatest:.1e} H (`studies/src/bin/peers/hardness.py`).\n",
+        "\n### tamaas with a limit of pressure\n\n`KatoSaturated` of tamaas 2.9 with a tolerance of 10⁻¹², on a \
+         periodic half-space; asperity follows the path to the same mean pressure. On {surfaces} rough surfaces of 64² \
+         and 128² nodes, with H/(E* h′) from 0.02 to 1 and mean pressures from 0.05 to 0.9 H, {other} nodes are in \
+         contact or yielded in one and not in the other, and pressures differ by at most {greatest:.1e} H \
+         (`studies/src/bin/peers/hardness.py`).\n",
     );
 }

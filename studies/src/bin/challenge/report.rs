@@ -55,20 +55,22 @@ impl Report {
     fn introduction(&self) -> String {
         format!(
             "## The contact-mechanics challenge\n\n\
-             Study `challenge`. The geometry of M. H. Müser et al., *Meeting the contact-mechanics challenge*, Tribol. Lett. 65 (2017) 118 (problem: \
-             arXiv 1512.02403): L = 100 µm, H = {HURST}, λᵣ = 20 µm, λₛ = 0.1 µm, rms gradient {GRADIENT}, E\\* = 25 MPa, reference \
-             load 250 kPa, which is 0.01 E\\*h′; periodic, kernel 2/(E\\*|q|). It is solved here **without adhesion**, with our own \
-             phases: the numbers of that paper, of adhesive contact, cannot be compared.\n\n\
-             ![Area over load against the width of the spectrum, distributions of gap and of pressure, and the mean gap against \
-             load](images/challenge.png)"
+             Study `challenge`. The geometry of M. H. Müser et al., *Meeting the contact-mechanics challenge*, Tribol. \
+             Lett. 65 (2017) 118 (problem: arXiv 1512.02403): L = 100 µm, H = {HURST}, λᵣ = 20 µm, λₛ = 0.1 µm, rms \
+             gradient {GRADIENT}, E\\* = 25 MPa, reference load 250 kPa, which is 0.01 E\\*h′; periodic, kernel \
+             2/(E\\*|q|). It is solved here **without adhesion**, with our own phases: the numbers of that paper, of \
+             adhesive contact, cannot be compared.\n\n\
+             ![Area over load against the width of the spectrum, distributions of gap and of pressure, and the mean \
+             gap against load](images/challenge.png)"
         )
     }
 
     fn resolution(&self) -> String {
         let band = self.meshes.first().and_then(|m| m.first()).map_or(0, |c| c.band);
         let mut text = format!(
-            "### The error of the resolution\n\nThe same surface, its spectrum cut at L/{band}, on the coarsest and the finest of three meshes. *Limit*: \
-             Richardson's extrapolation from the finest two, of first order for the area as counted and of second for the mean gap.\n\n\
+            "### The error of the resolution\n\nThe same surface, its spectrum cut at L/{band}, on the coarsest and \
+             the finest of three meshes. *Limit*: Richardson's extrapolation from the finest two, of first order for \
+             the area as counted and of second for the mean gap.\n\n\
              | p̄/E\\* | nodes | cells to λₛ | A/A₀ | corrected | ḡ/h_rms |\n|---|---|---|---|---|---|\n"
         );
         let count = self.meshes.first().map_or(0, Vec::len);
@@ -96,9 +98,9 @@ impl Report {
         let resolved = area <= RESOLVED && gap <= RESOLVED;
         let _ = write!(
             text,
-            "\n**Verdict: {}** (criterion: the limits of counted and corrected area, two estimates of the same number, within {r:.0} % \
-             of each other, and the mean gap on the finest mesh within {r:.0} % of its limit, at every load). Found: {:.2} % and \
-             {:.3} %.",
+            "\n**Verdict: {}** (criterion: the limits of counted and corrected area, two estimates of the same number, \
+             within {r:.0} % of each other, and the mean gap on the finest mesh within {r:.0} % of its limit, at every \
+             load). Found: {:.2} % and {:.3} %.",
             if resolved { "resolved" } else { "not resolved" },
             100.0 * area,
             100.0 * gap,
@@ -108,8 +110,8 @@ impl Report {
     }
 
     fn spectra(&self) -> String {
-        let mut text = "### Approaching the spectrum of the challenge\n\nThe reference load, p̄ = 0.01 E\\*, with four cells to λₛ (4.1 at the end), the rms \
-                        gradient always 1:\n\n\
+        let mut text = "### Approaching the spectrum of the challenge\n\nThe reference load, p̄ = 0.01 E\\*, with four \
+                        cells to λₛ (4.1 at the end), the rms gradient always 1:\n\n\
                         | L/λₛ | nodes | Nayak's α | A/A₀ | κ, corrected | ḡ [µm] | ḡ/h_rms |\n\
                         |---|---|---|---|---|---|---|\n"
             .to_string();
@@ -132,9 +134,10 @@ impl Report {
             let left = self.left_by_coarsest(last.load);
             let _ = write!(
                 text,
-                "\nThe wider the spectrum, the less κ, between √(2π) = {:.3} and Persson's √(8/π) = {persson:.3}. With four cells to \
-                 λₛ the corrected area of the table before is {:.1} % below its limit at this load; with as much here, this \
-                 geometry has, without adhesion, A/A₀ = {:.2} % at p̄ = {} E\\* and a mean gap of {:.3} µm.",
+                "\nThe wider the spectrum, the less κ, between √(2π) = {:.3} and Persson's √(8/π) = {persson:.3}. With \
+                 four cells to λₛ the corrected area of the table before is {:.1} % below its limit at this load; with \
+                 as much here, this geometry has, without adhesion, A/A₀ = {:.2} % at p̄ = {} E\\* and a mean gap of \
+                 {:.3} µm.",
                 AreaLoadLaw::BUSH_GIBSON_THOMAS,
                 100.0 * (1.0 - left),
                 100.0 * last.corrected / left,
@@ -154,8 +157,8 @@ impl Report {
         });
         same.map_or_else(String::new, |(fine, coarse)| {
             format!(
-                " With {} × {n} nodes, {:.1} cells to λₛ, the counted area differs by {:.1} %, the corrected one by {:.1} % and the \
-                 mean gap by {:.2} %.",
+                " With {} × {n} nodes, {:.1} cells to λₛ, the counted area differs by {:.1} %, the corrected one by \
+                 {:.1} % and the mean gap by {:.2} %.",
                 coarse.nodes,
                 coarse.cells(),
                 100.0 * (coarse.area / fine.area - 1.0).abs(),

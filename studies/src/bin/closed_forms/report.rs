@@ -35,16 +35,17 @@ impl Report {
         let mut text = format!(
             "## Closed forms\n\n\
              Study `closed_forms`.\n\n\
-             `FixedLoadSolver` to {} against `asperity::reference`, which shares no code with it, at equal load: the root mean \
-             square of the relative error over {LOADS} loads from 3/4 to 5/4 of a target (of radii, for the circular punch) and four \
-             places of the apex between the nodes. Cells are counted over the radius of the contact, the shorter semi-axis or the \
-             half-width. Pressures are the greatest; those of the cone and the punch, which are infinite there, from 0.35 to 0.65 \
-             of the radius.\n\n\
-             **Criterion**, for every entry: the order fitted to the finest four meshes is at least the expected one less \
-             {SLACK}, and on the finest mesh the error is at most {COEFFICIENT} × cells^(−expected order). *Expected* is 2, \
-             but 1 for area, stiffness, and the pressure under a circular edge that cells do not follow.\n\n\
-             ![Errors of area, approach, pressure, stiffness and energy against the cells over a contact, and the wave in \
-             two directions beside its limits](images/closed_forms.png)\n\n\
+             `FixedLoadSolver` to {} against `asperity::reference`, which shares no code with it, at equal load: the \
+             root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a target (of radii, for the \
+             circular punch) and four places of the apex between the nodes. Cells are counted over the radius of the \
+             contact, the shorter semi-axis or the half-width. Pressures are the greatest; those of the cone and the \
+             punch, which are infinite there, from 0.35 to 0.65 of the radius.\n\n\
+             **Criterion**, for every entry: the order fitted to the finest four meshes is at least the expected one \
+             less {SLACK}, and on the finest mesh the error is at most {COEFFICIENT} × cells^(−expected order). \
+             *Expected* is 2, but 1 for area, stiffness, and the pressure under a circular edge that cells do not \
+             follow.\n\n\
+             ![Errors of area, approach, pressure, stiffness and energy against the cells over a contact, and the wave \
+             in two directions beside its limits](images/closed_forms.png)\n\n\
              The error with {} cells, and in brackets the order at which it falls:\n\n{}\n",
             scientific(TOLERANCE, 1),
             CELLS[CELLS.len() - 1],
@@ -89,8 +90,9 @@ impl Report {
         let _ = write!(
             text,
             "### The square punch\n\n\
-             No closed form is known, only numbers: K = π × 0.3667874 E\\*L = 1.152297 E\\*L, the capacity of a square. Grids of \
-             up to {finest} cells a side, extrapolated, have {limit:.7}. **Verdict: {}** (criterion: within {} of it).\n\n",
+             No closed form is known, only numbers: K = π × 0.3667874 E\\*L = 1.152297 E\\*L, the capacity of a \
+             square. Grids of up to {finest} cells a side, extrapolated, have {limit:.7}. **Verdict: {}** (criterion: \
+             within {} of it).\n\n",
             verdict(close),
             scientific(PUNCH_CLOSE, 1),
         );
@@ -101,11 +103,11 @@ impl Report {
         let _ = write!(
             text,
             "### A wave in two directions\n\n\
-             K. L. Johnson, J. A. Greenwood and J. G. Higginson (1985): z = D cos(2πx/λ) cos(2πy/λ) is flat from \
-             p\\* = √2 πE\\*D/λ on; under a light load each crest is a Hertz contact by itself, and just below p\\* each \
+             K. L. Johnson, J. A. Greenwood and J. G. Higginson (1985): z = D cos(2πx/λ) cos(2πy/λ) is flat from p\\* \
+             = √2 πE\\*D/λ on; under a light load each crest is a Hertz contact by itself, and just below p\\* each \
              valley a penny crack. In between there is no closed form.\n\n\
-             **Full contact.** At p̄ = {BEYOND} p\\* the pressure is p̄ + p\\* cos cos, at most {:.2} p\\*, and the energy \
-             p\\*DA₀/8. p̄ less the least pressure is the load of full contact on the mesh. Relative errors:\n\n\
+             **Full contact.** At p̄ = {BEYOND} p\\* the pressure is p̄ + p\\* cos cos, at most {:.2} p\\*, and the \
+             energy p\\*DA₀/8. p̄ less the least pressure is the load of full contact on the mesh. Relative errors:\n\n\
              | kernel | nodes a wave | load of full contact | greatest pressure | energy |\n|---|---|---|---|---|\n",
             1.0 + BEYOND,
         );
@@ -119,8 +121,8 @@ impl Report {
         let [love, spectral] = &wave.full;
         let _ = write!(
             text,
-            "\n**Verdict: Love {}, spectral {}** (criteria: contact full at 1 + {bracket} of the load found and not at 1 − \
-             {bracket} on every grid; Love's second order within 0.2, found {:.2}; spectral errors within {}).\n\n",
+            "\n**Verdict: Love {}, spectral {}** (criteria: contact full at 1 + {bracket} of the load found and not at \
+             1 − {bracket} on every grid; Love's second order within 0.2, found {:.2}; spectral errors within {}).\n\n",
             verdict(love.agrees()),
             verdict(spectral.agrees()),
             love.order(),
@@ -132,10 +134,10 @@ impl Report {
         };
         let _ = writeln!(
             text,
-            "**The two limits.** Corrected area in contact over that of Hertz contacts, π(3P/8π)^⅔, with {} nodes a wave, and \
-             corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, kernel Love, means over \
-             four places of the crest. Lines in P^⅔ up to P = {} and in 1 − P up to {} go to {:.4} and {:.4} at the limits. \
-             **Verdict: contacts {}, holes {}** (criterion: 1 within {CLOSE}).",
+            "**The two limits.** Corrected area in contact over that of Hertz contacts, π(3P/8π)^⅔, with {} nodes a \
+             wave, and corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, \
+             kernel Love, means over four places of the crest. Lines in P^⅔ up to P = {} and in 1 − P up to {} go to \
+             {:.4} and {:.4} at the limits. **Verdict: contacts {}, holes {}** (criterion: 1 within {CLOSE}).",
             wave.light.nodes,
             wave.heavy.nodes,
             farthest(&wave.light),

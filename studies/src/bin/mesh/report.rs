@@ -20,15 +20,16 @@ impl Study {
     fn introduction(&self) -> String {
         format!(
             "## Mesh and spectrum\n\n\
-             Study `mesh`: how much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend on the mesh?\n\n\
-             Self-affine surfaces (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel Love), {} seeds, the same on every mesh, \
-             {} loads, of which the tables show every second; *cells* are those to the shortest wave, λₛ. *Corrected* is the area \
-             less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
-             (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is Richardson's \
-             extrapolation from the finest two meshes, 2 κ(Δ/2) − κ(Δ). Mean ± standard deviation of one surface. In the picture \
-             the numbers are p̄/(E\\* h′).\n\n\
-             ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the width of the \
-             spectrum](images/mesh.png)",
+             Study `mesh`: how much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend on the \
+             mesh?\n\n\
+             Self-affine surfaces (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel Love), {} seeds, the same on \
+             every mesh, {} loads, of which the tables show every second; *cells* are those to the shortest wave, λₛ. \
+             *Corrected* is the area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and \
+             no contact (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). \
+             *Limit* is Richardson's extrapolation from the finest two meshes, 2 κ(Δ/2) − κ(Δ). Mean ± standard \
+             deviation of one surface. In the picture the numbers are p̄/(E\\* h′).\n\n\
+             ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the \
+             width of the spectrum](images/mesh.png)",
             self.surfaces,
             LOADS.len(),
             Perimeter::AREA_CORRECTION,
@@ -68,11 +69,11 @@ impl Study {
         let between = limits().all(|kappa| kappa > persson && kappa < bgt);
         let _ = write!(
             text,
-            "\n**Verdict on the correction: {}** (criterion: on every mesh, on the mean over the loads, at most {:.0} % of the \
-             excess of the counted area is left, with either sign). It removes {} cells. The factor that fits these surfaces is \
-             {} in the place of {:.4}.\n\n\
-             {} between √(2π) = {bgt:.3} and Persson's √(8/π) = {persson:.3} {}; a κ near or above √(2π) on a coarse mesh is an \
-             artefact of the mesh.",
+            "\n**Verdict on the correction: {}** (criterion: on every mesh, on the mean over the loads, at most {:.0} \
+             % of the excess of the counted area is left, with either sign). It removes {} cells. The factor that fits \
+             these surfaces is {} in the place of {:.4}.\n\n\
+             {} between √(2π) = {bgt:.3} and Persson's √(8/π) = {persson:.3} {}; a κ near or above √(2π) on a coarse \
+             mesh is an artefact of the mesh.",
             if agrees { "agrees" } else { "differs" },
             100.0 * (1.0 - REMOVED),
             parts.join(", "),
@@ -86,8 +87,8 @@ impl Study {
 
     fn choice(&self) -> String {
         let mut text = "### What to choose\n\n\
-            Greatest error of each mesh over the loads, on the mean over the surfaces, in per cent of the limit for κ and of the \
-            finest mesh for the others:\n\n\
+            Greatest error of each mesh over the loads, on the mean over the surfaces, in per cent of the limit for κ \
+            and of the finest mesh for the others:\n\n\
             | cells | κ counted | κ corrected | mean gap | stiffness |\n|---|---|---|---|---|\n"
             .to_string();
         let worst = |value: &dyn Fn(usize) -> f64| {
@@ -112,11 +113,11 @@ impl Study {
             );
         }
         text.push_str(
-            "\nMean gap and stiffness are right on any mesh that represents the shortest wave. For the area use the corrected one, \
-             or better two meshes and the extrapolation 2 κ(Δ/2) − κ(Δ). Refine by Fourier interpolation \
-             (`Topography::resample`), and only if the spectrum really ends at λₛ: the area of a measured surface that is rough \
-             down to its pixels depends on the pixel. If surfaces differ by more than the error of the mesh, as under light \
-             loads, more surfaces help more than a finer mesh.",
+            "\nMean gap and stiffness are right on any mesh that represents the shortest wave. For the area use the \
+             corrected one, or better two meshes and the extrapolation 2 κ(Δ/2) − κ(Δ). Refine by Fourier \
+             interpolation (`Topography::resample`), and only if the spectrum really ends at λₛ: the area of a \
+             measured surface that is rough down to its pixels depends on the pixel. If surfaces differ by more than \
+             the error of the mesh, as under light loads, more surfaces help more than a finer mesh.",
         );
         text
     }
@@ -144,9 +145,10 @@ impl Study {
         let slope = Spread { mean: trend.slope, deviation: trend.error };
         let _ = write!(
             text,
-            "\nV. A. Yastrebov, G. Anciaux and J.-F. Molinari (J. Mech. Phys. Solids 107 (2017) 469) find that at a given \
-             p̄/(E\\* h′) the area falls with the logarithm of Nayak's parameter. Here, at p̄/(E\\* h′) = {}, dκ/d(ln α) = {} \
-             (standard error over all surfaces). **Verdict: {}** (criterion: negative by more than two standard errors).",
+            "\nV. A. Yastrebov, G. Anciaux and J.-F. Molinari (J. Mech. Phys. Solids 107 (2017) 469) find that at a \
+             given p̄/(E\\* h′) the area falls with the logarithm of Nayak's parameter. Here, at p̄/(E\\* h′) = {}, \
+             dκ/d(ln α) = {} (standard error over all surfaces). **Verdict: {}** (criterion: negative by more than two \
+             standard errors).",
             LOADS[MIDDLE],
             slope.decimals(3),
             if trend.falls() { "agrees" } else { "not resolved" },

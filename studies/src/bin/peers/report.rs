@@ -129,20 +129,21 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
     let table = table(rows, &surfaces);
     let mut text = format!(
         "## Other programs\n\n\
-         Study `peers`: other programs on the same surfaces, loads and half-spaces. `studies/src/bin/peers/peers.sh` installs and \
-         runs them; the study stops if its own results differ from those that the stored ones were compared with.\n\n\
-         * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py`: the influence matrix entry by entry, LU on \
-         the contact set, and the set changed until the conditions of contact hold to rounding, on grids of up to 1024 nodes.\n\
+         Study `peers`: other programs on the same surfaces, loads and half-spaces. `studies/src/bin/peers/peers.sh` \
+         installs and runs them; the study stops if its own results differ from those that the stored ones were \
+         compared with.\n\n\
+         * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py`: the influence matrix entry by \
+         entry, LU on the contact set, and the set changed until the conditions of contact hold to rounding, on grids \
+         of up to 1024 nodes.\n\
          * **Half-spaces**: free with Love's kernel (`Boussinesq`); periodic with 2/(E\\*|q|) (`Spectral`).\n\
-         * **Surfaces**: eight on 128 × 128 nodes; others on grids that are not square, with cells of 3 : 1, and with an odd number \
-         of nodes along y or x.\n\
+         * **Surfaces**: eight on 128 × 128 nodes; others on grids that are not square, with cells of 3 : 1, and with \
+         an odd number of nodes along y or x.\n\
          * **Loads**: p̄ = {} E\\* times the rms gradient between nodes. An entry is one surface under all three.\n\
-         * **Criterion**, for every entry: at each load the same nodes under pressure, pressures within {} of the greatest, mean \
-         gaps within {} Sq, and stiffness within {} of theirs by differences, from a second load larger by 10⁻⁵, unless a node \
-         joins in between.\n\n\
+         * **Criterion**, for every entry: at each load the same nodes under pressure, pressures within {} of the \
+         greatest, mean gaps within {} Sq, and stiffness within {} of theirs by differences, from a second load larger \
+         by 10⁻⁵, unless a node joins in between.\n\n\
          The worst of the entries that agree, in these measures:\n\n{table}\n\
-         **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.** The \
-         exception:\n",
+         **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.** The exception:\n",
         programs.join(", "),
         scientific(TOLERANCE, 1),
         LOADS.map(|load| load.to_string()).join(", "),
@@ -182,8 +183,8 @@ fn shortest_waves(waves: &[Wave]) -> String {
     let each = waves.iter().filter(wrong).map(|wave| {
         let k = wave.wave_number as f64;
         format!(
-            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of 2/(E\\*|q|); the mean of 1/{k} and 1/{} \
-             would be {:.6}",
+            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of 2/(E\\*|q|); the mean of \
+             1/{k} and 1/{} would be {:.6}",
             wave.program,
             wave.nx,
             wave.ny,
@@ -198,8 +199,8 @@ fn shortest_waves(waves: &[Wave]) -> String {
     let why = match wrong.len() {
         0 => "All are right.".to_string(),
         count => format!(
-            "All but {count} are right within {}: {}. With an odd number of nodes along its first axis tamaas gives one of the two \
-             conjugates of the shortest wave the wave number of the next shorter one.",
+            "All but {count} are right within {}: {}. With an odd number of nodes along its first axis tamaas gives \
+             one of the two conjugates of the shortest wave the wave number of the next shorter one.",
             scientific(WAVE, 1),
             wrong.join("; "),
         ),

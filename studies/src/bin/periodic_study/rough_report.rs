@@ -38,19 +38,22 @@ impl Study {
         let stiffness = Spread::of(upper.map(|load| self.spread(load, |s| s.stiffness).mean));
         format!(
             "### Rough contact against theory\n\n\
-             ![Area, mean gap and interfacial stiffness of self-affine surfaces against load](images/periodic_study.png)\n\n\
-             {} self-affine surfaces of {n} × {n} nodes (H = {HURST}, roll-off at a quarter and short cut-off at 1/32 of the side, \
-             {:.0} cells), kernel {}; {} loads each. *Corrected* is the area without the excess of whole cells along the edge of the \
-             contact. Mean ± standard deviation of one surface:\n\n{}\n\
-             * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected. Bush, Gibson and Thomas \
-             have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. The corrected κ is between the two at every \
-             light load: {} (criterion: the mean of the surfaces, each load).\n\
-             * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the greatest load \
-             the open area is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: within {:.0} %).\n\
-             * **Mean gap.** With p̄/(E\\* h′) from {} to {}, p̄ ∝ exp(−ḡ/(γ h_rms)) fits with γ = {}: {} (criterion: from {} to \
-             {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness.\n\
-             * **Stiffness.** K_i h_rms/(A₀ p̄) is {} over the upper decade of the same loads, and 1/γ = {:.2}, because the curve is \
-             not exactly exponential.",
+             ![Area, mean gap and interfacial stiffness of self-affine surfaces against \
+             load](images/periodic_study.png)\n\n\
+             {} self-affine surfaces of {n} × {n} nodes (H = {HURST}, roll-off at a quarter and short cut-off at 1/32 \
+             of the side, {:.0} cells), kernel {}; {} loads each. *Corrected* is the area without the excess of whole \
+             cells along the edge of the contact. Mean ± standard deviation of one surface:\n\n{}\n\
+             * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected. Bush, Gibson \
+             and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. The corrected κ is \
+             between the two at every light load: {} (criterion: the mean of the surfaces, each load).\n\
+             * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the \
+             greatest load the open area is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: \
+             within {:.0} %).\n\
+             * **Mean gap.** With p̄/(E\\* h′) from {} to {}, p̄ ∝ exp(−ḡ/(γ h_rms)) fits with γ = {}: {} (criterion: \
+             from {} to {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the \
+             stiffness.\n\
+             * **Stiffness.** K_i h_rms/(A₀ p̄) is {} over the upper decade of the same loads, and 1/γ = {:.2}, \
+             because the curve is not exactly exponential.",
             self.surfaces,
             CUTOFF * self.nodes as f64,
             self.kernel.name(),

@@ -24,11 +24,12 @@ const AMPLITUDES: [f64; 4] = [0.1, 0.3, 0.6, 0.9];
 pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
     let _ = write!(
         text,
-        "\n### A rigid surface on one body\n\nThe same, but a rigid surface on one body: tractions move the surface normally too, and pressing \
-         leaves tractions. Pressed with friction in {RAMP} steps, then sheared between −U and U. All over what the \
-         path gives: T and D of the first loading, and of the second cycle, at U = {} times κμδ, of several seeds from the least to \
-         the greatest.\n\n\
-         | surface | ν | β | T, first loading | D, first loading | T, second cycle | D, second cycle |\n|---|---|---|---|---|---|---|\n",
+        "\n### A rigid surface on one body\n\nThe same, but a rigid surface on one body: tractions move the surface \
+         normally too, and pressing leaves tractions. Pressed with friction in {RAMP} steps, then sheared between −U \
+         and U. All over what the path gives: T and D of the first loading, and of the second cycle, at U = {} times \
+         κμδ, of several seeds from the least to the greatest.\n\n\
+         | surface | ν | β | T, first loading | D, first loading | T, second cycle | D, second cycle \
+         |\n|---|---|---|---|---|---|---|\n",
         AMPLITUDES.map(|amplitude| amplitude.to_string()).join(", ")
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
