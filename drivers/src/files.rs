@@ -8,7 +8,7 @@ macro_rules! file {
 }
 
 /// One file of each format and kind.
-pub(crate) const FILES: [&[u8]; 28] = [
+pub(crate) const FILES: [&[u8]; 34] = [
     file!("missing.npy"),
     file!("missing.gsf"),
     file!("masked.gwy"),
@@ -37,10 +37,16 @@ pub(crate) const FILES: [&[u8]; 28] = [
     file!("missing_f32.opdx"),
     file!("missing_i32.dat"),
     file!("missing_f32.plu"),
+    file!("profile_positions.x3p"),
+    file!("profile_i16.pro"),
+    file!("profile_npl.sdf"),
+    file!("profile_f64.opdx"),
+    file!("profile.prf"),
+    file!("profile.smd"),
 ];
 
 /// How files of each format begin.
-pub(crate) const BEGINNINGS: [&[u8]; 20] = [
+pub(crate) const BEGINNINGS: [&[u8]; 21] = [
     b"\x93NUMPY\x01\x00",
     b"Gwyddion Simple Field 1.0\n",
     b"GWYPGwyContainer\0",
@@ -58,6 +64,7 @@ pub(crate) const BEGINNINGS: [&[u8]; 20] = [
     b"\\*File list\r\n",
     b"[DataSet]\r\n",
     b"\x01\x00Directory\0",
+    b"1 2\r\nA 0 PRF\r\nCX M 2 MM 1 D\r\nCZ M 2 UM 1 L\r\nEOR\r\nSPACING CX 1\r\n",
     b"VCA DATA\x01\x00\x00\x55",
     b"\x88\x1b\x03\x6f",
     b"\x05\x00",

@@ -6,7 +6,8 @@ use std::path::Path;
 use super::raw::Parsed;
 use super::text::TextLayout;
 use super::{
-    al3d, gsf, gwy, ibw, metropro, nanoscope, nid, npy, opd, opdx, plu, sdf, sur, text, vk4, x3p,
+    al3d, gsf, gwy, ibw, metropro, nanoscope, nid, npy, opd, opdx, plu, prf, sdf, sur, text, vk4,
+    x3p,
 };
 
 /// A format of files with heights.
@@ -23,7 +24,7 @@ pub enum Format {
     Sdf,
     /// ISO 25178-72, `.x3p`.
     X3p,
-    /// Digital Surf, `.sur`.
+    /// Digital Surf, `.sur`, `.pro`.
     DigitalSurf,
     /// Alicona, `.al3d`.
     Alicona,
@@ -43,6 +44,8 @@ pub enum Format {
     MetroPro,
     /// Sensofar, `.plu`.
     Sensofar,
+    /// Profiles of ISO 5436-2 of 2001 and of the National Physical Laboratory, `.smd`, `.prf`.
+    Profile,
     /// Rows of numbers, or lists of points.
     Text,
 }
@@ -70,7 +73,7 @@ fn begins(file: &[u8], with: &[&[u8]]) -> bool {
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Npy,
         Self::GwyddionSimpleField,
         Self::Gwyddion,
@@ -86,6 +89,7 @@ impl Format {
         Self::Vision64,
         Self::MetroPro,
         Self::Sensofar,
+        Self::Profile,
         Self::Text,
     ];
 
@@ -123,7 +127,7 @@ impl Format {
             },
             Self::DigitalSurf => Known {
                 name: "Digital Surf",
-                endings: &["sur"],
+                endings: &["sur", "pro"],
                 is_it: |file| begins(file, sur::BEGINS),
                 parse: |file, _| sur::parse(file),
             },
@@ -180,6 +184,12 @@ impl Format {
                 endings: &["plu"],
                 is_it: plu::looks_like,
                 parse: |file, _| plu::parse(file),
+            },
+            Self::Profile => Known {
+                name: "ISO 5436-2",
+                endings: &["smd", "prf"],
+                is_it: prf::looks_like,
+                parse: |file, _| prf::parse(file),
             },
             Self::Text => Known {
                 name: "text",

@@ -10,18 +10,19 @@
 //! | NumPy | `.npy` | floating-point numbers and integers | float64 |
 //! | Gwyddion Simple Field | `.gsf` | float32 | float32 |
 //! | Gwyddion | `.gwy` | all maps, masks | |
-//! | ISO 25178-71 and BCR | `.sdf` | ASCII and binary, 1.0 and 2.0 | |
-//! | ISO 25178-72 | `.x3p` | all four types of number, missing points | float64 |
-//! | Digital Surf | `.sur` | plain and compressed; of a surface with colours, the surface | |
+//! | ISO 25178-71 and BCR | `.sdf` | ASCII and binary, 1.0 and 2.0, profiles | |
+//! | ISO 25178-72 | `.x3p` | all four types of number, missing points, profiles | float64 |
+//! | Digital Surf | `.sur`, `.pro` | plain and compressed, profiles; of a surface with colours, the surface | |
 //! | Alicona | `.al3d` | depth image | |
 //! | Keyence | `.vk4`, `.vk6`, `.vk7` | height images | |
 //! | Nanoscope (Bruker, Veeco) | `.spm`, `.di`, `.000` | all images | |
 //! | Igor (Asylum Research) | `.ibw` | all layers of a wave of version 5 | |
 //! | Nanosurf | `.nid` | all images | |
 //! | Wyko (Vision) | `.opd` | heights | |
-//! | Vision64, Dektak | `.opdx` | maps | |
+//! | Vision64, Dektak | `.opdx` | maps and profiles | |
 //! | MetroPro (Zygo) | `.dat` | heights | |
 //! | Sensofar | `.plu` | heights | |
+//! | ISO 5436-2 of 2001, NPL | `.smd`, `.prf` | profiles | |
 //! | text | `.txt`, `.asc`, `.csv`, `.xyz` | matrices, and lists of points | |
 //!
 //! A file is known by its first bytes, not by its name.
@@ -105,6 +106,10 @@ mod options;
 mod output;
 #[cfg(feature = "io")]
 mod plu;
+#[cfg(feature = "io")]
+mod prf;
+#[cfg(feature = "io")]
+mod profile;
 #[cfg(feature = "io")]
 mod raw;
 #[cfg(feature = "io")]

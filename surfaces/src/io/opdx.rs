@@ -1,14 +1,16 @@
-//! Bruker's Vision64 and Dektak, `.opdx`: the maps of a profilometer.
+//! Bruker's Vision64 and Dektak, `.opdx`: the maps and profiles of a profilometer.
 //!
 //! Sources: SurfaceTopography's `OPDx.py`, Gwyddion's `dektakvca.c`; a file of an instrument, which holds a profile.
 //!
 //! A tree of named items: a length and a name, a byte for the type, and what that asks for. Maps are containers in
 //! `2D_Data`, each with its numbers (`Matrix`, float32), their scale (`DataScale`), and points and extents of two
-//! dimensions, the first of which is y.
+//! dimensions, the first of which is y. Profiles are those in `1D_Data`: heights (`Array`), their scale, and positions
+//! (`PositionArray`).
 
 use super::bytes::{Bytes, latin1, shape};
 use super::fault::Fault;
 use super::number::Number;
+use super::profile;
 use super::raw::{Channel, Parsed};
 use super::unit::LengthUnit;
 
@@ -19,26 +21,73 @@ const MISSING: f64 = 1e30;
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let mut channels = Vec::new();
-    let mut has_profiles = false;
     for item in Items::new(Bytes::from(file, BEGINS.len())?) {
         match item? {
-            (b"2D_Data", Item::Container(maps)) => {
-                for map in Items::new(maps) {
-                    if let (name, Item::Container(map)) = map? {
-                        channels.extend(channel(latin1(name), map)?);
-                    }
-                }
-            }
-            (b"1D_Data", _) => has_profiles = true,
+            (b"2D_Data", Item::Container(maps)) => take(&mut channels, maps, map_in)?,
+            (b"1D_Data", Item::Container(profiles)) => take(&mut channels, profiles, profile_in)?,
             _ => {}
         }
     }
-    ensure!(!channels.is_empty() || !has_profiles, "it holds a profile, which is no surface");
     Ok(channels)
 }
 
+/// What the containers among these items hold.
+fn take(channels: &mut Vec<Channel>, items: Bytes, read: Reader) -> Result<(), Fault> {
+    for item in Items::new(items) {
+        if let (name, Item::Container(items)) = item? {
+            channels.extend(read(latin1(name), items)?);
+        }
+    }
+    Ok(())
+}
+
+type Reader = fn(String, Bytes) -> Result<Option<Channel>, Fault>;
+
+/// The profile in a container, if there is one.
+fn profile_in(name: String, items: Bytes) -> Result<Option<Channel>, Fault> {
+    let (mut heights, mut positions) = (None, None);
+    let (mut scale, mut unit_of_x, mut stated) = (None, None, None);
+    for item in Items::new(items) {
+        match item? {
+            (b"Array", Item::Array(found)) => heights = Some(found),
+            (b"PositionArray", Item::Array(found)) => positions = Some(found),
+            (b"DataScale", Item::Quantity(value, unit)) => scale = Some((value, unit)),
+            (b"Extent", Item::Quantity(_, unit)) => unit_of_x = Some(unit),
+            (b"NumPoints", Item::Number(count)) => stated = Some(count),
+            _ => {}
+        }
+    }
+    let (Some(heights), Some(positions)) = (heights, positions) else {
+        return Ok(None);
+    };
+    let (count, places) = (heights.count(), positions.count());
+    let stated = stated.unwrap_or(count as f64);
+    ensure!(
+        count == places && stated == count as f64,
+        "a profile states {stated} points, but has {count} heights and {places} positions"
+    );
+    shape(count, 1)?;
+    let (factor, unit) = scale.unwrap_or((1.0, String::new()));
+    let mut notes = Vec::new();
+    let heights = heights.values(|value| height(value, factor))?;
+    let (heights, step) =
+        profile::on_even_steps(positions.values(|position| position)?, heights, &mut notes)?;
+    Ok(Some(Channel {
+        name,
+        height_unit: Some(unit).filter(|unit| !unit.is_empty()),
+        lateral_unit: unit_of_x,
+        notes,
+        ..profile::channel(heights, step)
+    }))
+}
+
+/// A height, NaN where its number stands for none.
+fn height(value: f64, factor: f64) -> f64 {
+    if value >= MISSING { f64::NAN } else { value * factor }
+}
+
 /// The map in a container, if there is one.
-fn channel(name: String, items: Bytes) -> Result<Option<Channel>, Fault> {
+fn map_in(name: String, items: Bytes) -> Result<Option<Channel>, Fault> {
     let (mut matrix, mut scale) = (None, None);
     let (mut extents, mut points) = ([None, None], [None, None]);
     for item in Items::new(items) {
@@ -64,7 +113,6 @@ fn channel(name: String, items: Bytes) -> Result<Option<Channel>, Fault> {
         }
     }
     let (factor, unit) = scale.unwrap_or((1.0, String::new()));
-    let height = |value: f64| if value >= MISSING { f64::NAN } else { value * factor };
     let (cell, lateral_unit) = match extents {
         [Some((lx, x)), Some((ly, y))] => {
             let metres = |unit: &str| LengthUnit::in_file(unit).map(LengthUnit::metres);
@@ -79,7 +127,11 @@ fn channel(name: String, items: Bytes) -> Result<Option<Channel>, Fault> {
         name,
         height_unit: Some(unit).filter(|unit| !unit.is_empty()),
         lateral_unit,
-        ..Channel::in_metres((nx, ny), Number::F32.decode_all(data, height)?, cell)
+        ..Channel::in_metres(
+            (nx, ny),
+            Number::F32.decode_all(data, |value| height(value, factor))?,
+            cell,
+        )
     }))
 }
 
@@ -89,13 +141,40 @@ struct Matrix<'a> {
     data: &'a [u8],
 }
 
+/// Numbers of a profile.
+struct Array<'a> {
+    number: Number,
+    data: &'a [u8],
+}
+
+impl<'a> Array<'a> {
+    /// Numbers behind the code of their type and the length of each, `None` if they are no floating-point numbers.
+    fn read(content: &'a [u8]) -> Option<Self> {
+        let (number, data) = match content {
+            [0x0c, 4, 0, 0, 0, data @ ..] => (Number::F32, data),
+            [0x0d, 8, 0, 0, 0, data @ ..] => (Number::F64, data),
+            _ => return None,
+        };
+        Some(Self { number, data })
+    }
+
+    fn count(&self) -> usize {
+        self.data.len() / self.number.size()
+    }
+
+    fn values(&self, map: impl Fn(f64) -> f64) -> Result<Vec<f64>, Fault> {
+        self.number.decode_all(self.data, map)
+    }
+}
+
 /// What a name stands for.
 enum Item<'a> {
     Number(f64),
     Quantity(f64, String),
     Container(Bytes<'a>),
     Matrix(Matrix<'a>),
-    /// Something that no map needs.
+    Array(Array<'a>),
+    /// Something that neither map nor profile needs.
     Other,
 }
 
@@ -166,8 +245,12 @@ fn read<'a>(bytes: &mut Bytes<'a>) -> Result<Option<(&'a [u8], Item<'a>)>, Fault
             bytes.take(9)?;
             Item::Other
         }
-        // A type, an array, a list, positions: each with the name of its type.
-        0x0e | 0x40 | 0x42 | 0x7c => {
+        0x40 => {
+            text(bytes)?;
+            Array::read(content(bytes)?).map_or(Item::Other, Item::Array)
+        }
+        // A type, a list, positions: each with the name of its type.
+        0x0e | 0x42 | 0x7c => {
             text(bytes)?;
             content(bytes)?;
             Item::Other

@@ -1,4 +1,4 @@
-//! Digital Surf, `.sur`, plain and compressed.
+//! Digital Surf, `.sur` and `.pro`, plain and compressed.
 //!
 //! Sources: the readers of surfalize, SurfaceTopography, RosettaSciIO and Gwyddion (`surffile.c`), which agree on the
 //! layout; two files of instruments.
@@ -11,6 +11,8 @@
 //! Compressed heights are zlib streams. Deflate makes at most 1032 bytes of one: a stream that claims more is not
 //! read, so the memory for a file is bounded by its length, if by a larger multiple than in other formats.
 //!
+//! A profile is a study of one line, which has lengths along x and z alone.
+//!
 //! A surface with colours, with intensities or with both has them in further objects behind it, which are not read.
 
 use std::borrow::Cow;
@@ -21,6 +23,7 @@ use flate2::read::ZlibDecoder;
 use super::bytes::{Bytes, latin1, shape};
 use super::fault::Fault;
 use super::number::{Number, positive};
+use super::profile;
 use super::raw::{Channel, Parsed};
 use super::unit::LengthUnit;
 
@@ -31,6 +34,10 @@ const HEADER: usize = 512;
 const MAX_EXPANSION: u64 = 1032;
 
 pub(super) const BEGINS: &[&[u8]] = &[b"DIGITAL SURF", b"DSCOMPRESSED"];
+
+/// Types of studies.
+const PROFILE: u16 = 1;
+const SURFACE: u16 = 2;
 
 /// Types of studies whose first object is a surface, and other objects images of it.
 const WITH_IMAGES: [u16; 3] = [11, 13, 16];
@@ -54,14 +61,13 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         bytes.end(format_args!("{nx} x {ny} heights"))?;
     }
     let values = header.number.decode_all(&data, |value| header.height(value))?;
-    let (cell, lateral_unit) = header.cell();
-    Ok(vec![Channel {
-        name: header.name,
-        height_unit: header.units.2,
-        lateral_unit,
-        notes,
-        ..Channel::in_metres((nx, ny), values, Some(cell))
-    }])
+    let (map, lateral_unit) = if header.is_profile {
+        (profile::channel(values, header.spacing.0), header.units.0)
+    } else {
+        let (cell, unit) = header.cell();
+        (Channel::in_metres((nx, ny), values, Some(cell)), unit)
+    };
+    Ok(vec![Channel { name: header.name, height_unit: header.units.2, lateral_unit, notes, ..map }])
 }
 
 /// What the header says of the heights.
@@ -70,6 +76,7 @@ struct Header {
     /// Name of the z axis.
     name: String,
     shape: (usize, usize),
+    is_profile: bool,
     /// Whether images follow the heights.
     has_images: bool,
     number: Number,
@@ -98,7 +105,7 @@ impl Header {
         );
         let (nx, ny) = (field(108)?.u32()?, field(112)?.u32()?);
         let kind = count(18)?;
-        require_surface(kind, ny)?;
+        require_heights(kind)?;
         let has_images = WITH_IMAGES.contains(&kind);
         let objects = count(14)?;
         ensure!(
@@ -129,6 +136,8 @@ impl Header {
         Ok(Self {
             name: text(164)?,
             shape: shape(nx, ny)?,
+            // Gwyddion calls the maps that it writes profiles.
+            is_profile: kind == PROFILE && ny == 1,
             has_images,
             number,
             comments: usize::from(count(334)?) + usize::from(count(336)?),
@@ -170,13 +179,15 @@ const TYPES: &str = "something unknown|a profile|a surface|a binary image|a seri
     a surface with colours and intensities|a parametric profile|a series of colour images|something unknown|\
     a spectrum|a map of spectra";
 
-fn require_surface(kind: u16, ny: u32) -> Result<(), Fault> {
-    // Gwyddion calls the maps that it writes profiles.
-    if kind == 2 || (kind == 1 && ny > 1) || WITH_IMAGES.contains(&kind) {
+fn require_heights(kind: u16) -> Result<(), Fault> {
+    if [PROFILE, SURFACE].contains(&kind) || WITH_IMAGES.contains(&kind) {
         return Ok(());
     }
     let name = TYPES.split('|').nth(kind.into()).unwrap_or("something unknown");
-    bail!(at(18), "it holds {name} (type {kind}), but a surface (type 2) was expected")
+    bail!(
+        at(18),
+        "it holds {name} (type {kind}), but a surface (type 2) or a profile (type 1) was expected"
+    )
 }
 
 /// The heights of a compressed file: a number of streams, the length of each before and after compression, and the

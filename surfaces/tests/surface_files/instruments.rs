@@ -202,7 +202,7 @@ fn what_is_no_surface_is_called_by_its_name() {
         [1_u32.to_le_bytes(), 3_u32.to_le_bytes()].concat(),
     ];
     assert_refused("missing_f32.plu", &[(&kind[0], &kind[1])], "it holds a profile (type 1)");
-    assert_refused("missing_f32.opdx", &[(b"2D_Data", b"1D_Data")], "it holds a profile");
+    assert_refused("missing_f32.opdx", &[(b"2D_Data", b"1D_Data")], "there is no map in it");
     assert_refused("plain_i16.nid", &[(b"SaveBits=16", b"SaveBits=12")], "12 bits each");
     let twice: [(&[u8], &[u8]); 2] = [(b"Vk4File", b"Vk5File"); 2];
     assert_refused("missing_u32.vk6", &twice, "the archive has no member 'Vk4File'");

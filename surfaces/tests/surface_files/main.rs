@@ -4,6 +4,7 @@
 mod dialects;
 mod hostile;
 mod instruments;
+mod profiles;
 mod refusals;
 mod stated;
 mod third_party;

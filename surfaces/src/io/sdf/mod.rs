@@ -8,6 +8,8 @@
 //! type, so large that it can only be a marker. The types of numbers are those of both families in each of them:
 //! instruments do not keep to the standard there.
 //!
+//! A profile is a map of one line; instruments write 0 or anything else for its spacing along y.
+//!
 //! What follows the heights, a trailer, may be anything and is not read.
 
 mod ascii;
@@ -16,21 +18,33 @@ mod binary;
 use super::bytes::Bytes;
 use super::fault::Fault;
 use super::number::Number;
+use super::profile;
 use super::raw::{Channel, Parsed};
 
 /// Bytes of `bISO-1.0` and the like.
 const MAGIC: usize = 8;
 
 /// How files begin, `a` for text and `b` for binary.
-pub(super) const BEGINS: &[&[u8]] =
-    &[b"aISO-1.0", b"bISO-1.0", b"aISO-2.0", b"bISO-2.0", b"aBCR-", b"bBCR-", b"ABCR-", b"BBCR-"];
+pub(super) const BEGINS: &[&[u8]] = &[
+    b"aISO-1.0",
+    b"bISO-1.0",
+    b"aISO-2.0",
+    b"bISO-2.0",
+    b"aBCR-",
+    b"bBCR-",
+    b"ABCR-",
+    b"BBCR-",
+    b"aBCR -",
+    b"aNPL-",
+];
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let magic: [u8; MAGIC] = Bytes::new(file).array()?;
     let revision = match &magic[1..] {
         b"ISO-1.0" => Revision::Iso1,
         b"ISO-2.0" => Revision::Iso2,
-        [b'B', b'C', b'R', b'-', ..] => Revision::Bcr,
+        // The National Physical Laboratory calls its profiles NPL.
+        [b'B', b'C', b'R', b'-' | b' ', ..] | [b'N', b'P', b'L', b'-', ..] => Revision::Bcr,
         _ => bail!(at(1), "the file is neither of ISO-1.0, nor of ISO-2.0, nor of BCR"),
     };
     let is_text = magic[0].eq_ignore_ascii_case(&b'a');
@@ -88,7 +102,12 @@ impl Header {
 
     /// The map of these heights.
     fn channel(&self, heights: Vec<f64>, note: Option<String>) -> Channel {
-        let mut channel = Channel::in_metres(self.shape, heights, Some(self.spacing));
+        let (dx, dy) = self.spacing;
+        let is_profile = self.shape.1 == 1 && !(dy > 0.0 && dy.is_finite());
+        let mut channel = match is_profile {
+            true => profile::channel(heights, dx),
+            false => Channel::in_metres(self.shape, heights, Some(self.spacing)),
+        };
         channel.notes.extend(note);
         channel.notes.extend(self.least_in_bcr(&channel.values));
         channel

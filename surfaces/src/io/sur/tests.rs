@@ -203,14 +203,20 @@ fn what_is_no_single_map_is_refused() {
     assert_refused(parse(&longer), "but 3 bytes follow");
 }
 
+/// Of several lines it is a map; of one it has lengths along x alone.
 #[test]
 fn a_profile_is_a_map_if_it_has_several_lines() -> TestResult {
     let mut file = plain();
     put(&mut file, 18, [1, 0]);
-    assert_eq!(only(parse(&file))?.shape, (3, 2));
+    let map = only(parse(&file))?;
+    assert_eq!((map.shape, map.cell), ((3, 2), Some((2.0, 3.0))));
     put(&mut file, 108, 6_u32.to_le_bytes());
     put(&mut file, 112, 1_u32.to_le_bytes());
-    assert_refused(parse(&file), "a profile (type 1)");
+    put(&mut file, 124, 0.0_f32.to_le_bytes());
+    put(&mut file, 196, [b' '; 16]);
+    let profile = only(parse(&file))?;
+    assert_eq!((profile.shape, profile.cell), ((6, 1), Some((2.0, 2.0))));
+    assert_eq!(profile.lateral_unit.as_deref(), Some("µm"));
     Ok(())
 }
 

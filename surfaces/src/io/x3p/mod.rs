@@ -4,6 +4,9 @@
 //! checksums. Archives packed by hand hold all of it in a folder. Points that were not measured are NaN, or, where
 //! heights are integers, marked in `bindata/valid.bin`, one bit for each point, the least significant first.
 //!
+//! A profile, of feature type PRF, is one line; its points may have positions of their own, which stand before the height
+//! of each. In the order of openGPS, x, y and z, an axis of even steps takes no number.
+//!
 //! The description and the data have to agree to the byte: a matrix whose sizes were wrong by one would be a sheared
 //! surface. Checksums that do not match are common in files that circulate, and only noted.
 //!
@@ -13,9 +16,13 @@ mod archive;
 mod record;
 mod write;
 
+use std::borrow::Cow;
+use std::ops::Range;
+
 use self::archive::{Archive, md5_of};
-use self::record::{Link, Points, Record};
+use self::record::{Link, Points, Record, Stored};
 use super::fault::Fault;
+use super::profile;
 use super::raw::{Channel, Parsed};
 
 #[cfg(test)]
@@ -34,24 +41,43 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let checksum = archive.checksum(link);
     compare(archive::DESCRIPTION, &description, checksum.as_deref(), &mut notes);
     drop(description);
-    let values = match &record.points {
-        Points::Listed(values) => values.iter().map(|value| record.height(*value)).collect(),
+    let (heights, positions) = match &record.points {
+        Points::Listed(points) => {
+            let heights = points.iter().map(|[_, z]| record.z.metres(*z)).collect();
+            let along = |x: Stored| points.iter().map(|[place, _]| x.metres(*place)).collect();
+            (heights, record.x.map(along))
+        }
         Points::Linked(data, valid) => {
             let (nx, ny) = record.shape;
-            let length = (nx * ny).saturating_mul(record.number.size());
-            let bytes = linked(&mut archive, data, length, &mut notes)?;
-            let mut values = record.number.decode_all(&bytes, |value| record.height(value))?;
+            let size = |axis: Option<Stored>| axis.map_or(0, |axis| axis.number.size());
+            let [before, between] = [record.x, record.y].map(size);
+            let each = before + between + record.z.number.size();
+            let bytes = linked(&mut archive, data, (nx * ny).saturating_mul(each), &mut notes)?;
+            let column = |axis: Stored, begins: usize| {
+                let bytes = column(&bytes, each, begins..begins + axis.number.size());
+                axis.number.decode_all(&bytes, |number| axis.metres(number))
+            };
+            let mut heights = column(record.z, before + between)?;
+            let positions = record.x.map(|x| column(x, 0)).transpose()?;
             if let Some(valid) = valid {
-                let bits = linked(&mut archive, valid, values.len().div_ceil(8), &mut notes)?;
-                drop_invalid(&bits, &mut values);
+                let bits = linked(&mut archive, valid, heights.len().div_ceil(8), &mut notes)?;
+                drop_invalid(&bits, &mut heights);
             }
-            values
+            (heights, positions)
         }
     };
     if record.rotated {
         notes.push("the axes of the file are rotated, which is not applied".to_string());
     }
-    Ok(vec![Channel { notes, ..Channel::in_metres(record.shape, values, Some(record.cell)) }])
+    let map = match positions {
+        Some(positions) => {
+            let (heights, step) = profile::on_even_steps(positions, heights, &mut notes)?;
+            profile::channel(heights, step)
+        }
+        None if record.is_profile => profile::channel(heights, record.cell.0),
+        None => Channel::in_metres(record.shape, heights, Some(record.cell)),
+    };
+    Ok(vec![Channel { notes, ..map }])
 }
 
 /// The bytes of a member of the archive.
@@ -64,6 +90,15 @@ fn linked(
     let bytes = archive.data(&link.path, length)?;
     compare(&link.path, &bytes, link.md5.as_deref(), notes);
     Ok(bytes)
+}
+
+/// Some bytes of each point, where each takes as many.
+fn column(bytes: &[u8], each: usize, of_point: Range<usize>) -> Cow<'_, [u8]> {
+    if of_point.len() == each {
+        return Cow::Borrowed(bytes);
+    }
+    let points = bytes.chunks_exact(each);
+    Cow::Owned(points.flat_map(|point| &point[of_point.clone()]).copied().collect())
 }
 
 /// Takes away the heights of points whose bit is not set.

@@ -21,11 +21,11 @@ pub(super) struct Record {
     pub(super) shape: (usize, usize),
     /// Spacing along x and y \[m\].
     pub(super) cell: (f64, f64),
-    pub(super) number: Number,
-    /// A stored number is this many metres.
-    pub(super) increment: f64,
-    /// Height \[m\] of a stored zero.
-    pub(super) offset: f64,
+    pub(super) z: Stored,
+    /// Positions of a profile whose points have their own, and those along y, which are not read.
+    pub(super) x: Option<Stored>,
+    pub(super) y: Option<Stored>,
+    pub(super) is_profile: bool,
     pub(super) points: Points,
     /// Where the checksum of the description is.
     pub(super) checksum: String,
@@ -33,13 +33,40 @@ pub(super) struct Record {
     pub(super) rotated: bool,
 }
 
+/// An axis along which each point has a number.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stored {
+    pub(super) number: Number,
+    /// A stored number is this many metres.
+    increment: f64,
+    /// Metres of a stored zero.
+    offset: f64,
+}
+
+impl Stored {
+    fn read(axis: Node) -> Result<Self, Fault> {
+        Ok(Self {
+            number: number(axis)?,
+            increment: increment(axis)?,
+            offset: quantity(axis, "Offset", 0.0)?,
+        })
+    }
+
+    /// The length \[m\] of a stored number.
+    pub(super) fn metres(&self, number: f64) -> f64 {
+        let length = number * self.increment;
+        // Without an offset nothing is added: -0 would become 0.
+        if self.offset == 0.0 { length } else { length + self.offset }
+    }
+}
+
 /// Where the heights are.
 #[derive(Debug)]
 pub(super) enum Points {
     /// In a member of their own, and which of them are valid in another.
     Linked(Link, Option<Link>),
-    /// In the description.
-    Listed(Vec<f64>),
+    /// In the description: of each point the first number and the last, which is its height.
+    Listed(Vec<[f64; 2]>),
 }
 
 /// A member, and its checksum.
@@ -75,13 +102,6 @@ impl Record {
             .map_err(|fault| fault.prefixed(&format!("'{DESCRIPTION}': ")))
     }
 
-    /// The height \[m\] of a stored number.
-    pub(super) fn height(&self, number: f64) -> f64 {
-        let height = number * self.increment;
-        // Without an offset nothing is added: -0 would become 0.
-        if self.offset == 0.0 { height } else { height + self.offset }
-    }
-
     fn of(root: Node) -> Result<Self, Fault> {
         let name = root.tag_name().name();
         ensure!(
@@ -92,21 +112,41 @@ impl Record {
         );
         let first = descend(root, &["Record1"])?;
         let feature = text(descend(first, &["FeatureType"])?);
+        let is_profile = feature == "PRF";
         ensure!(
-            feature == "SUR",
+            is_profile || feature == "SUR",
             at(place(first)),
-            "the FeatureType is '{feature}': only surfaces, SUR, are read"
+            "the FeatureType is '{feature}': only surfaces, SUR, and profiles, PRF, are read"
         );
         let axes = descend(first, &["Axes"])?;
         let z = descend(axes, &["CZ"])?;
+        require(z, "AxisType", "A", "gives each height")?;
         let third = descend(root, &["Record3"])?;
-        let shape = matrix(descend(third, &["MatrixDimension"])?)?;
+        let dimension = descend(third, &["MatrixDimension"])?;
+        let shape = matrix(dimension)?;
+        let (mut x, mut y) = (None, None);
+        let cell = if is_profile {
+            ensure!(
+                shape.1 == 1,
+                at(place(dimension)),
+                "SizeY is {}, but a profile has one line",
+                shape.1
+            );
+            x = positions(child(axes, "CX"))?;
+            y = positions(child(axes, "CY"))?;
+            // A profile has no width, whatever stands for one.
+            let step = if x.is_some() { 0.0 } else { spacing(axes, "CX")? };
+            (step, step)
+        } else {
+            (spacing(axes, "CX")?, spacing(axes, "CY")?)
+        };
         Ok(Self {
             shape,
-            cell: (spacing(axes, "CX")?, spacing(axes, "CY")?),
-            number: number(z)?,
-            increment: increment(z)?,
-            offset: quantity(z, "Offset", 0.0)?,
+            cell,
+            z: Stored::read(z)?,
+            x,
+            y,
+            is_profile,
             points: points(third, shape)?,
             checksum: descend(root, &["Record4", "ChecksumFile"]).map_or("", text).to_string(),
             rotated: child(axes, "Rotation").is_some_and(turns),
@@ -129,6 +169,12 @@ fn matrix(dimension: Node) -> Result<(usize, usize), Fault> {
     shape(count("SizeX")?, count("SizeY")?)
 }
 
+/// The positions along an axis of a profile, if each point has its own.
+fn positions(axis: Option<Node>) -> Result<Option<Stored>, Fault> {
+    let absolute = axis.filter(|axis| child(*axis, "AxisType").map(text) == Some("A"));
+    absolute.map(Stored::read).transpose()
+}
+
 /// Spacing along x or y \[m\].
 fn spacing(axes: Node, name: &str) -> Result<f64, Fault> {
     let axis = descend(axes, &[name])?;
@@ -142,17 +188,20 @@ fn spacing(axes: Node, name: &str) -> Result<f64, Fault> {
     Ok(spacing)
 }
 
-/// The type of heights.
-fn number(z: Node) -> Result<Number, Fault> {
-    require(z, "AxisType", "A", "gives each height")?;
-    let node = descend(z, &["DataType"])?;
+/// The type of stored numbers.
+fn number(axis: Node) -> Result<Number, Fault> {
+    let node = descend(axis, &["DataType"])?;
     Ok(match text(node) {
         "I" => Number::I16,
         "L" => Number::I32,
         "F" => Number::F32,
         "D" => Number::F64,
         other => {
-            bail!(at(place(node)), "CZ has the DataType '{other}', but I, L, F or D was expected")
+            let name = axis.tag_name().name();
+            bail!(
+                at(place(node)),
+                "{name} has the DataType '{other}', but I, L, F or D was expected"
+            )
         }
     })
 }
@@ -215,15 +264,20 @@ fn points(third: Node, shape: (usize, usize)) -> Result<Points, Fault> {
     Ok(Points::Linked(data, valid))
 }
 
-/// Heights written out in the description: the last number of each point, which is missing if there is none.
-fn listed(list: Node, (nx, ny): (usize, usize)) -> Result<Vec<f64>, Fault> {
+/// Points written out in the description: the first and the last number of each, missing where there is none.
+fn listed(list: Node, (nx, ny): (usize, usize)) -> Result<Vec<[f64; 2]>, Fault> {
     // Whatever their namespace: files differ in which they use.
     let data = list.children().filter(|child| child.tag_name().name() == "Datum");
-    let heights = data.map(|datum| {
-        let height = text(datum).rsplit(';').next().unwrap_or_default().trim();
-        if height.is_empty() { Ok(f64::NAN) } else { parsed("a Datum", height, place(datum)) }
+    let points = data.map(|datum| {
+        let number = |number: Option<&str>| match number.unwrap_or_default().trim() {
+            "" => Ok(f64::NAN),
+            number => parsed("a Datum", number, place(datum)),
+        };
+        let mut numbers = text(datum).split(';');
+        let last = text(datum).rsplit(';').next();
+        Ok::<_, Fault>([number(numbers.next())?, number(last)?])
     });
-    let values: Vec<f64> = heights.collect::<Result<_, _>>()?;
+    let values: Vec<[f64; 2]> = points.collect::<Result<_, _>>()?;
     let found = values.len();
     ensure!(
         found == nx * ny,

@@ -123,6 +123,37 @@ fn heights_may_stand_in_the_description() -> TestResult {
     Ok(())
 }
 
+/// Positions of a profile may be uneven, and its heights in the description.
+#[test]
+fn profiles_have_positions_of_their_own() -> TestResult {
+    let description = DESCRIPTION.replace("SUR", "PRF").replace("<SizeX>2", "<SizeX>4");
+    let absolute = description
+        .replace("<CX><AxisType>I", "<CX><DataType>F</DataType><AxisType>A")
+        .replace("<Increment>2e-6", "<Increment>1e-3")
+        .replace("<PointDataLink>data.bin</PointDataLink>", "")
+        .replace(
+            "<DataLink></DataLink>",
+            "<DataList><Datum>0;;0</Datum><Datum>3;;6</Datum>\
+            <Datum>4;;8</Datum><Datum>6;;12</Datum></DataList>",
+        );
+    let listed = only(parse(&archive(&[("main.xml", absolute.as_bytes())])?))?;
+    assert_eq!((listed.shape, listed.cell), ((4, 1), Some((2e-3, 2e-3))));
+    // A straight line stays one.
+    for (k, height) in listed.values.iter().enumerate() {
+        assert!((height - 4.0 * k as f64).abs() < 1e-14, "{k}: {height}");
+    }
+    assert!(listed.notes.len() == 1 && listed.notes[0].contains("uneven"));
+    let narrow =
+        description.replace("<Increment>3e-6", "<Increment>0").replace("<SizeX>4", "<SizeX>2");
+    let members: [(&str, &[u8]); 2] = [("main.xml", narrow.as_bytes()), ("data.bin", &DATA)];
+    let even = only(parse(&archive(&members)?))?;
+    assert_eq!((even.values, even.cell), (vec![1.0, -2.0], Some((2e-6, 2e-6))));
+    let wide = narrow.replace("<SizeY>1", "<SizeY>2");
+    let members: [(&str, &[u8]); 2] = [("main.xml", wide.as_bytes()), ("data.bin", &DATA)];
+    assert_refused(parse(&archive(&members)?), "SizeY is 2, but a profile has one line");
+    Ok(())
+}
+
 #[test]
 fn checksums_and_rotations_are_noted() -> TestResult {
     let sum = |sum: &str| {
@@ -159,7 +190,7 @@ fn md5_is_that_of_the_standard() {
 #[test]
 fn what_is_no_surface_of_one_layer_is_refused() -> TestResult {
     for (part, by, expected) in [
-        ("SUR", "PRF", "the FeatureType is 'PRF'"),
+        ("SUR", "PRX", "the FeatureType is 'PRX'"),
         ("SUR", "PCL", "the FeatureType is 'PCL'"),
         ("<SizeZ>1", "<SizeZ>2", "SizeZ is 2"),
         ("<SizeX>2", "<SizeX>two", "SizeX is 'two'"),
