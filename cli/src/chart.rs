@@ -1,4 +1,4 @@
-//! Charts: panels with curves and legends, side by side in one PNG file.
+//! Charts: panels with curves and legends, side by side in one file.
 
 use std::path::{Path, PathBuf};
 
@@ -6,9 +6,10 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::axis::Axis;
+use crate::chart_format::{self, ChartFormat};
 use crate::outcome::Failure;
 use crate::panel::{Area, Drawn, Panel, anchor};
-use crate::picture::{FINE, draw_fine};
+use crate::picture::{FINE, draw_fine, draw_svg};
 
 /// Blue.
 pub const BLUE: RGBColor = RGBColor(0, 90, 160);
@@ -97,21 +98,44 @@ pub struct Chart {
     pub legend: Corner,
 }
 
-/// Draws charts into a PNG file, so many in a row.
+/// Draws charts into a file, so many in a row: PNG, unless another format [was chosen](chart_format).
 pub fn draw(charts: &[Chart], columns: usize, name: &Path) -> Result<PathBuf, Failure> {
     let rows = charts.len().div_ceil(columns);
     let size = (SIZE.0 * columns.min(charts.len()) as i32, SIZE.1 * rows as i32);
-    draw_fine(name, size, |area| {
-        for (place, chart) in charts.iter().enumerate() {
-            let at = (SIZE.0 * (place % columns) as i32, SIZE.1 * (place / columns) as i32);
-            chart.draw(area, at)?;
-        }
-        Ok(())
-    })
+    let format = chart_format::chosen().unwrap_or(ChartFormat::Png);
+    let name = &name.with_extension(format.ending());
+    match format {
+        ChartFormat::Png => draw_fine(name, size, |area| draw_all(charts, columns, area, RISE)),
+        ChartFormat::Svg => draw_svg(name, size, FINE, |area| {
+            area.fill(&WHITE)?;
+            draw_all(charts, columns, area, 0.0)
+        }),
+    }
+}
+
+/// How far above a point pictures of pixels put a text that is to be centred there, in fonts; SVG centres it.
+const RISE: f64 = 0.2;
+
+fn draw_all<DB: DrawingBackend>(
+    charts: &[Chart],
+    columns: usize,
+    area: &Area<DB>,
+    text_rise: f64,
+) -> Drawn<DB> {
+    for (place, chart) in charts.iter().enumerate() {
+        let at = (SIZE.0 * (place % columns) as i32, SIZE.1 * (place / columns) as i32);
+        chart.draw(area, at, text_rise)?;
+    }
+    Ok(())
 }
 
 impl Chart {
-    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, at: (i32, i32)) -> Drawn<DB> {
+    fn draw<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        at: (i32, i32),
+        text_rise: f64,
+    ) -> Drawn<DB> {
         let (left, top, right, bottom) = MARGINS;
         let panel = Panel {
             left: FINE * (at.0 + left),
@@ -120,7 +144,7 @@ impl Chart {
             height: FINE * (SIZE.1 - top - bottom),
             font: FINE * FONT,
             stroke: FINE as u32,
-            text_rise: 0.2,
+            text_rise,
         };
         let middle = (panel.left + panel.width / 2, FINE * (at.1 + top / 2));
         let centred = anchor(HPos::Center, VPos::Center);

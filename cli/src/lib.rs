@@ -5,6 +5,7 @@ pub use asperity::number;
 
 pub mod axis;
 pub mod chart;
+pub mod chart_format;
 pub mod contour;
 pub mod field_map;
 pub mod half_space;

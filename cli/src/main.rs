@@ -35,6 +35,7 @@ mod values;
 
 use std::process::ExitCode;
 
+use asperity_cli::chart_format::{self, ChartFormat};
 use asperity_cli::outcome::Failure;
 use asperity_cli::units::{self, Units};
 use asperity_cli::{say, speech};
@@ -72,6 +73,10 @@ struct Arguments {
         value_name = "SI|mm-N-MPa"
     )]
     units: Units,
+
+    /// Format of charts, png or svg [default: svg for loading_curve, png for the others]; maps are PNG
+    #[arg(long, global = true, value_name = "png|svg", value_parser = ChartFormat::parse)]
+    charts: Option<ChartFormat>,
 
     #[command(subcommand)]
     command: Option<Command>,
@@ -114,6 +119,7 @@ fn main() -> ExitCode {
         speech::be_quiet();
     }
     units::choose(arguments.units);
+    arguments.charts.into_iter().for_each(chart_format::choose);
     let done = match arguments.command {
         None => example(&given),
         Some(Command::Path(options)) => {

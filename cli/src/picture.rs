@@ -1,4 +1,4 @@
-//! Pictures of pixels, as PNG files.
+//! Pictures of pixels, as PNG files, and of lines and text, as SVG files.
 
 use std::path::{Path, PathBuf};
 
@@ -30,6 +30,28 @@ pub fn draw_fine(
     let encoded = pixels((FINE * width, FINE * height), drawing)
         .and_then(|fine| encode((width, height), &averages(&fine, width as usize)));
     keep(name, encoded)
+}
+
+/// Draws lines and text in `fine` units to a pixel, of which plotters needs whole ones, and writes them as SVG.
+pub fn draw_svg(
+    name: &Path,
+    (width, height): (i32, i32),
+    fine: i32,
+    drawing: impl for<'a> FnOnce(&Area<SVGBackend<'a>>) -> Drawn<SVGBackend<'a>>,
+) -> Result<PathBuf, Failure> {
+    let units = (fine * width, fine * height);
+    let mut text = String::new();
+    {
+        let size = (units.0 as u32, units.1 as u32);
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        let drawn = drawing(&area).and_then(|()| area.present());
+        drawn.map_err(|error| Failure::writing(name, error.to_string()))?;
+    }
+    let in_units = format!("width=\"{}\" height=\"{}\"", units.0, units.1);
+    outcome::write(
+        name,
+        text.replacen(&in_units, &format!("width=\"{width}\" height=\"{height}\""), 1),
+    )
 }
 
 /// Three bytes for each pixel of a drawing on white.

@@ -330,6 +330,19 @@ fn two_rough_surfaces_face_each_other() -> Done {
     let both = "rough.npy --against-surface other.npy";
     assert_eq!(table(both, "a")?, table("turned_over.npy", "b")?);
     assert_eq!(table(&format!("{both} --against-turned"), "c")?, table("turned.npy", "d")?);
+    // Moved by 5 nodes along x and by -2 along y, and by whole periods more.
+    let turned = |ix: usize, iy: usize| ((47 + 5 + 48 - ix) % 48, (iy + 2) % 48);
+    write_npy(folder.join("moved.npy"), &sum(&turned))?;
+    let both = format!("{both} --periodic love");
+    let moved = table("moved.npy --periodic love", "e")?;
+    for (shift, out) in [("5,-2", "f"), ("-43,46", "g"), ("53,94", "h")] {
+        assert_eq!(table(&format!("{both} --against-shift {shift}"), out)?, moved);
+    }
+    assert_eq!(table(&format!("{both} --against-shift -48,96"), "i")?, table(&both, "k")?);
+    let free = "path --surface rough.npy --against-surface other.npy --against-shift 1,0 --side 1cm --material steel";
+    is_refused(&output(&folder.0, free)?, &["--against-shift", "repeat", "--periodic"]);
+    let words = free.replace("1,0", "1mm,0");
+    assert_eq!(output(&folder.0, &words)?.status.code(), Some(2));
     write_npy(folder.join("small.npy"), &other.resize(24, 24, 0.0))?;
     let small = "path --surface rough.npy --against-surface small.npy --side 1cm --material steel";
     is_refused(&output(&folder.0, small)?, &["two rough surfaces need one grid", "24 x 24 nodes"]);

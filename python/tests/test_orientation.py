@@ -153,6 +153,7 @@ def test_turning_and_cutting() -> None:
     assert surface.transpose().size == (SIZE[1], SIZE[0])
     np.testing.assert_array_equal(surface.flip("x").z, Z[:, ::-1])
     np.testing.assert_array_equal(surface.flip("y").z, Z[::-1])
+    np.testing.assert_array_equal(surface.shift(2, -1).z, np.roll(Z, (-1, 2), (0, 1)))
     piece = surface.crop(rows=(1, 4), columns=(2, 7))
     np.testing.assert_array_equal(piece.z, Z[1:4, 2:7])
     assert piece.cell == surface.cell

@@ -26,7 +26,7 @@ pub(super) fn draw(
     directory: &Path,
 ) -> Result<PathBuf, Failure> {
     let name = directory.join("loading_curve.svg");
-    sheet::write(&name, |area| panels(area, job, states).map_err(|error| error.to_string()))
+    sheet::write(&name, |area| panels(area, job, states), |area| panels(area, job, states))
 }
 
 fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState]) -> Drawn<DB> {

@@ -7,6 +7,7 @@
 
 mod adhesive;
 mod again;
+mod conductance_chart;
 mod curves;
 mod expected;
 pub(crate) mod fields;
@@ -16,6 +17,7 @@ mod interrupt;
 mod job;
 mod joint;
 mod lines;
+mod loop_chart;
 mod map;
 mod moments;
 mod object;
@@ -240,13 +242,16 @@ fn follow_one(
         (false, None) => table::print(&job, &mut solver, &states, told),
     });
     if options.unload {
-        outcome.all_written(unloading::write(&job, &mut solver, &options.out));
+        outcome.all_written(unloading::write(&job, &mut solver, &states, &options.out));
     }
     if options.report {
         outcome.written(report_of(&job, &mut solver, &states, (&options.out, begun)));
     }
     outcome.all_written(options.joint.write(&job.pair(), &states, &options.out));
     outcome.written(curves::draw(&job, &states, &options.out));
+    if let Some(drawn) = conductance_chart::draw(&job, &conductions, &states, &options.out) {
+        outcome.written(drawn);
+    }
     map.into_iter().for_each(|map| outcome.written(map));
     let (moments, missed) = moments::reached(&job, &states);
     for moment in &moments {

@@ -11,6 +11,7 @@ use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 use super::fields::Format;
 use super::joint::Joint;
 use super::roughness::Roughness;
+use super::source::Shift;
 use super::updater::{Updater, no_room};
 use crate::adhesion::Sticking;
 use crate::at::At;
@@ -62,6 +63,11 @@ pub(crate) struct Options {
     /// Turn that surface by 180° in its plane
     #[arg(long, requires = "against_surface", help_heading = "Bodies")]
     pub(super) against_turned: bool,
+
+    /// Move that surface by so many nodes along x and y, as it faces the other; it has to repeat there, and what leaves
+    /// at one edge comes in at the opposite one
+    #[arg(long, value_name = "IX,IY", requires = "against_surface", allow_hyphen_values = true, value_parser = Shift::parse, help_heading = "Bodies")]
+    pub(super) against_shift: Option<Shift>,
 
     #[command(flatten)]
     pub(super) reading: Reading,
@@ -126,7 +132,7 @@ pub(crate) struct Options {
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless
     /// --record names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "against_surface", "against_turned", "nodes", "seed", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "rows_are_y", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "work_of_adhesion", "adhesion_range", "cohesive_stress", "periodic", "rule"], help_heading = "Records and files")]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "against_surface", "against_turned", "against_shift", "nodes", "seed", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "rows_are_y", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "work_of_adhesion", "adhesion_range", "cohesive_stress", "periodic", "rule"], help_heading = "Records and files")]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]

@@ -1,29 +1,36 @@
-//! Four panels in one SVG file, with a title: the manner of `loading_curve.svg`.
+//! Four panels in one file, with a title: the manner of `loading_curve.svg`.
 
 use std::path::{Path, PathBuf};
 
-use asperity_cli::outcome::{self, Failure};
+use asperity_cli::chart_format::{self, ChartFormat};
+use asperity_cli::outcome::Failure;
 use asperity_cli::panel::{Area, Drawn, Panel, anchor};
+use asperity_cli::picture;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 /// Width and height of the picture.
 const SIZE: (i32, i32) = (1240, 980);
-/// Drawing units to a pixel: plotters rounds to whole ones.
-const FINE: i32 = 8;
 
-/// Writes what `draw` draws.
+/// Drawing units to a pixel: plotters rounds to whole ones.
+fn fine() -> i32 {
+    if is_of_pixels() { picture::FINE } else { 8 }
+}
+
+fn is_of_pixels() -> bool {
+    chart_format::chosen() == Some(ChartFormat::Png)
+}
+
+/// Writes what is drawn, as SVG unless another format was chosen.
 pub(super) fn write(
     name: &Path,
-    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> Result<(), String>,
+    svg: impl for<'a> FnOnce(&Area<SVGBackend<'a>>) -> Drawn<SVGBackend<'a>>,
+    png: impl for<'a> FnOnce(&Area<BitMapBackend<'a>>) -> Drawn<BitMapBackend<'a>>,
 ) -> Result<PathBuf, Failure> {
-    let (width, height) = (SIZE.0 * FINE, SIZE.1 * FINE);
-    let mut text = String::new();
-    let backend = SVGBackend::with_string(&mut text, (width as u32, height as u32));
-    draw(&backend.into_drawing_area()).map_err(|error| Failure::writing(name, error))?;
-    let fine = format!("width=\"{width}\" height=\"{height}\"");
-    let size = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
-    outcome::write(name, text.replacen(&fine, &size, 1))
+    match is_of_pixels() {
+        true => picture::draw_fine(&name.with_extension("png"), SIZE, png),
+        false => picture::draw_svg(name, SIZE, fine(), svg),
+    }
 }
 
 /// Writes the title of the picture.
@@ -38,19 +45,19 @@ pub(super) fn instead<DB: DrawingBackend>(area: &Area<DB>, text: &str) -> Drawn<
 
 fn centred<DB: DrawingBackend>(area: &Area<DB>, text: &str, y: i32) -> Drawn<DB> {
     let pos = anchor(HPos::Center, VPos::Center);
-    panel(0).write(area, text, (FINE * SIZE.0 / 2, FINE * y), 22 * FINE, pos)
+    panel(0).write(area, text, (fine() * SIZE.0 / 2, fine() * y), 22 * fine(), pos)
 }
 
 /// The panel at a place from 0 to 3, row by row.
 pub(super) fn panel(place: i32) -> Panel {
     Panel {
-        left: FINE * (120 + (place % 2) * 620),
-        top: FINE * (76 + (place / 2) * 460),
-        width: FINE * 470,
-        height: FINE * 350,
-        font: FINE * 17,
-        stroke: FINE as u32,
-        text_rise: 0.0,
+        left: fine() * (120 + (place % 2) * 620),
+        top: fine() * (76 + (place / 2) * 460),
+        width: fine() * 470,
+        height: fine() * 350,
+        font: fine() * 17,
+        stroke: fine() as u32,
+        text_rise: if is_of_pixels() { 0.2 } else { 0.0 },
     }
 }
 
@@ -62,12 +69,12 @@ pub(super) fn legend<'a, DB: DrawingBackend>(
 ) -> Drawn<DB> {
     let named = curves.into_iter().filter(|(_, name)| !name.is_empty());
     for (line, (colour, name)) in (0_i32..).zip(named) {
-        let x = panel.left + 18 * FINE;
-        let y = panel.top + (24 + 26 * line) * FINE;
-        let stroke = colour.stroke_width(3 * FINE as u32);
-        area.draw(&PathElement::new(vec![(x, y), (x + 34 * FINE, y)], stroke))?;
+        let x = panel.left + 18 * fine();
+        let y = panel.top + (24 + 26 * line) * fine();
+        let stroke = colour.stroke_width(3 * fine() as u32);
+        area.draw(&PathElement::new(vec![(x, y), (x + 34 * fine(), y)], stroke))?;
         let pos = anchor(HPos::Left, VPos::Center);
-        panel.write(area, name, (x + 44 * FINE, y), panel.font, pos)?;
+        panel.write(area, name, (x + 44 * fine(), y), panel.font, pos)?;
     }
     Ok(())
 }

@@ -43,20 +43,62 @@ pub(super) fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
         true => facing.flip(Axis::X).flip(Axis::Y),
         false => facing,
     };
+    let facing = match options.against_shift {
+        Some(shift) => shifted(&facing, shift, options)?,
+        None => facing,
+    };
     let failed = |error| Failure::new("cannot put the surfaces on each other", error);
     let both = Topography::sample(&(&first).plus(&facing), *first_grid).map_err(failed)?;
     name = format!("{name} against {}", other.display());
     note!(
-        "facing     {} is turned over about y{}",
+        "facing     {} is turned over about y{}{}",
         other.display(),
         match options.against_turned {
             true => ", and by 180° in its plane",
             false => "",
+        },
+        match options.against_shift {
+            Some(Shift(ix, iy)) => format!(", and moved by {ix} and {iy} nodes along x and y"),
+            None => String::new(),
         }
     );
     let mut source = source_of(&name, &both, options);
     source["against_turned"] = json!(options.against_turned);
+    source["against_shift"] = json!(options.against_shift.map(|Shift(ix, iy)| [ix, iy]));
     Ok((both, name, source))
+}
+
+/// Nodes along x and y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Shift(isize, isize);
+
+impl Shift {
+    /// Two integers.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let (ix, iy) = text.split_once(',').ok_or("a shift is IX,IY: nodes along x and y")?;
+        let node = |text: &str| {
+            text.trim().parse().map_err(|_| format!("'{text}' is no whole number of nodes"))
+        };
+        Ok(Self(node(ix)?, node(iy)?))
+    }
+}
+
+/// A surface moved as asked, along directions in which it repeats.
+fn shifted(
+    surface: &Topography,
+    Shift(ix, iy): Shift,
+    options: &Options,
+) -> Result<Topography, Failure> {
+    let repeats = options.boundary().repeats();
+    for (shift, along, repeats) in [(ix, "x", repeats[0]), (iy, "y", repeats[1])] {
+        if shift != 0 && !repeats {
+            return Err(Failure::request(format!(
+                "--against-shift moves along {along} what has to repeat there, and this half-space does not: give --periodic, \
+                 or cut both files to the part that is to touch"
+            )));
+        }
+    }
+    Ok(surface.shift(ix, iy))
 }
 
 /// What the settings say of it.

@@ -1,24 +1,26 @@
-//! Unloading from the last state, with `--unload`: `unloading.csv` and the surface that is left.
+//! Unloading from the last state, with `--unload`: `unloading.csv`, its picture, and the surface that is left.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use asperity::LoadingSolver;
 use asperity::io::{write_npy, write_x3p};
 use asperity::loading::History;
+use asperity::{LoadingSolver, LoadingState};
 
 use super::Solver;
 use super::job::Job;
 use super::lines::printed;
+use super::loop_chart::{self, Branches};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::say;
 
-/// Writes the states on unloading, from the last state of the path to the last touch, and the surface that is left;
+/// Writes and draws the states on unloading, from the last state of the path to the last touch, and the surface that is left;
 /// prints what the loop costs.
 pub(super) fn write(
     job: &Job,
     solver: &mut Solver,
+    loading: &[LoadingState],
     directory: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
     let failed = |error| Failure::new("cannot compute the unloading path", error);
@@ -36,14 +38,18 @@ pub(super) fn write(
     let mut lines = "load,approach,mean_gap,contact_area,contact_area_fraction,contact_stiffness,\
                      interfacial_stiffness,elastic_energy\n"
         .to_string();
-    for state in states.states().iter().rev() {
-        let contact = &state.contact;
+    let mut branches = Branches {
+        loading: loading.iter().map(|state| state.contact).collect(),
+        unloading: states.states().iter().rev().map(|state| state.contact).collect(),
+    };
+    for contact in &mut branches.unloading {
+        contact.approach += touch;
         // Writing to a text cannot fail.
         let _ = writeln!(
             lines,
             "{:e},{:e},{:e},{:e},{:e},{},{},{:e}",
             contact.load,
-            contact.approach + touch,
+            contact.approach,
             contact.mean_gap,
             contact.contact_area,
             contact.contact_area_fraction,
@@ -67,5 +73,6 @@ pub(super) fn write(
     let heights = surface.matrix();
     write_npy(&npy, heights).map_err(|error| Failure::writing(&npy, error))?;
     write_x3p(&x3p, &job.grid(), heights).map_err(|error| Failure::writing(&x3p, error))?;
-    Ok(vec![outcome::write(&directory.join("unloading.csv"), lines)?, npy, x3p])
+    let table = outcome::write(&directory.join("unloading.csv"), lines)?;
+    Ok(vec![table, npy, x3p, loop_chart::draw(job, &branches, directory)?])
 }

@@ -388,6 +388,20 @@ impl Surface {
         self.made(py, |surface| Ok(surface.flip(axis)))
     }
 
+    /// Move the surface by whole nodes; what leaves it at one edge comes in at the opposite one.
+    ///
+    /// Parameters
+    /// ----------
+    /// along_x, along_y : int
+    ///     Nodes; negative ones move it back.
+    ///
+    /// Returns
+    /// -------
+    /// Surface
+    fn shift(&self, py: Python<'_>, along_x: isize, along_y: isize) -> Fallible<Self> {
+        self.made(py, |surface| Ok(surface.shift(along_x, along_y)))
+    }
+
     /// Multiply the heights by a number.
     ///
     /// Parameters

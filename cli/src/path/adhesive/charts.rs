@@ -26,7 +26,7 @@ const LOST: Quantity = ("energy lost in jumps", "J", |s| s.dissipated);
 /// Draws the picture into a directory.
 pub(super) fn draw(job: &Job, followed: &Followed, directory: &Path) -> Result<PathBuf, Failure> {
     let name = directory.join("loading_curve.svg");
-    sheet::write(&name, |area| panels(area, job, followed).map_err(|error| error.to_string()))
+    sheet::write(&name, |area| panels(area, job, followed), |area| panels(area, job, followed))
 }
 
 fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, followed: &Followed) -> Drawn<DB> {

@@ -2,6 +2,8 @@
 
 use std::ops::{Bound, Range, RangeBounds};
 
+use nalgebra::DMatrix;
+
 use super::Topography;
 use crate::surface::{Axis, HeightMap};
 use crate::{Error, Grid};
@@ -48,6 +50,21 @@ impl Topography {
             Axis::Y => (0..ny / 2).for_each(|iy| heights.swap_columns(iy, ny - 1 - iy)),
         }
         Self { grid: self.grid, map: HeightMap::of_finite(heights) }
+    }
+
+    /// The surface moved by whole nodes along x and y; what leaves it at one edge comes in at the opposite one, as on a
+    /// surface that repeats.
+    #[must_use]
+    pub fn shift(&self, along_x: isize, along_y: isize) -> Self {
+        let heights = self.heights();
+        let (nx, ny) = heights.shape();
+        // Grids are never empty, and far smaller than the greatest number.
+        let from =
+            |k: usize, shift: isize, n: usize| (k + n - shift.rem_euclid(n as isize) as usize) % n;
+        let moved = DMatrix::from_fn(nx, ny, |ix, iy| {
+            heights[(from(ix, along_x, nx), from(iy, along_y, ny))]
+        });
+        Self { grid: self.grid, map: HeightMap::of_finite(moved) }
     }
 
     /// Heights multiplied by `factor`, which may be negative or 0.
@@ -135,6 +152,19 @@ mod tests {
         assert_eq!(map.invert(), map.scaled(-1.0)?);
         // A topography is a surface on its own grid.
         assert_eq!(Surface::heights(&map.scaled(2.0)?, map.grid())?, 2.0 * map.heights());
+        Ok(())
+    }
+
+    #[test]
+    fn what_leaves_at_an_edge_comes_in_at_the_other() -> Result<(), Error> {
+        let map = map()?;
+        assert_eq!(*map.shift(0, 1).heights(), dmatrix![3.0, 1.0, 2.0; 6.0, 4.0, 5.0]);
+        assert_eq!(*map.shift(-1, -2).heights(), dmatrix![6.0, 4.0, 5.0; 3.0, 1.0, 2.0]);
+        for (ix, iy) in [(0, 0), (2, 3), (-4, 6), (0, -3)] {
+            assert_eq!(map.shift(ix, iy), map);
+        }
+        let extreme = map.shift(isize::MIN, isize::MAX);
+        assert_eq!(extreme.shift(isize::MIN, 0).shift(0, -isize::MAX), map);
         Ok(())
     }
 
