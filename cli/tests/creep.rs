@@ -81,6 +81,47 @@ fn a_held_load_is_that_of_the_reference() -> Done {
     Ok(())
 }
 
+/// Contact that grows is that of the elastic path at the effective load, and so is its leak: at once that of the load, in
+/// the end that of the load over what is left of the modulus.
+#[test]
+fn a_rubber_leaks_less_and_less() -> Done {
+    let folder = with_record("creep-leak")?;
+    let (load, fluid) = (6e-8, "--viscosity 1e-3 --pressure-drop 1e-3 --along x");
+    let line = format!("creep path.npz {SERIES} --load {load:e} --time 1e3 {fluid}");
+    let words = run(&folder.0, &format!("{line} --out leaks"))?;
+    assert!(words.contains("leak       "), "{words}");
+    assert!(folder.join("leaks/leak_over_time.png").exists());
+    let (header, rows) = table(&folder.join("leaks/leak_over_time.csv"))?;
+    assert_eq!(header, "time,effective_load,load,contact_area_fraction,mean_gap,leak_rate");
+    assert!(rows.len() > 20 && rows.windows(2).all(|pair| pair[0][5] >= pair[1][5]));
+    let [first, last] = [&rows[0], &rows[rows.len() - 1]];
+    assert_eq!((first[0], first[1]), (0.0, load));
+    // exp(-1000) is nothing.
+    assert!((last[1] / (load / 0.2) - 1.0).abs() < 1e-12, "{}", last[1]);
+    assert!(last[5] < 0.9 * first[5]);
+    for row in [first, &rows[rows.len() / 2], last] {
+        let elastic = format!("leak path.npz {fluid} --states 0 --load {:e} --json", row[1]);
+        let found: serde_json::Value = serde_json::from_str(&run(&folder.0, &elastic)?)?;
+        let found = found["leak_rate"].as_f64().ok_or("no leak rate")?;
+        // The same state of the same path, with the same arithmetic up to rounding of the effective load.
+        assert!((found / row[5] - 1.0).abs() < 1e-9, "{found} {}", row[5]);
+    }
+    let json: serde_json::Value =
+        serde_json::from_str(&run(&folder.0, &format!("{line} --json"))?)?;
+    assert_eq!(json["leaks"].as_array().map(Vec::len), Some(rows.len()));
+    // An approach that is held is contact that is held.
+    let held = format!("creep path.npz {SERIES} --approach 1e-4 {fluid} --out held");
+    run(&folder.0, &held)?;
+    let (_, rows) = table(&folder.join("held/leak_over_time.csv"))?;
+    assert!(rows[0][5] > 0.0 && rows.iter().all(|row| row[5] == rows[0][5]));
+    fs::write(folder.join("back.csv"), "time,load\n0,3e-8\n1,1e-8\n")?;
+    let back = output(&folder.0, &format!("creep path.npz {SERIES} --history back.csv {fluid}"))?;
+    is_refused(&back, &["contact recedes from t = ", "--time"]);
+    let half = output(&folder.0, &format!("creep path.npz {SERIES} --load 1e-8 --viscosity 1"))?;
+    assert_eq!(half.status.code(), Some(2));
+    Ok(())
+}
+
 /// Contact that recedes is stepped; a table of approach relaxes.
 #[test]
 fn histories_from_files() -> Done {

@@ -75,11 +75,24 @@ fn what_yields_conducts_as_well() -> Done {
     let e_star_times_rho = e_star * 0.04;
     let expected = 2.0 * first("contact_stiffness")? / e_star_times_rho;
     assert!(near(found[found.len() - 1], expected), "{} {expected}", found[found.len() - 1]);
+    for picture in ["conductance.png", "unloading.svg", "loading_curve.svg"] {
+        assert!(folder.join("out").join(picture).exists(), "{picture}");
+    }
     let interfacial = first("interfacial_stiffness")? / 1e-4;
     let table = "out/interface.csv";
     assert!(near(last(table, "thermal_conductance")?, 2.0 * interfacial / e_star_times_rho));
     assert!(near(last(table, "tangential_stiffness")?, interfacial / 1.2));
-    finished(&folder.0, &format!("path --resume path.npz {joint} --out again"))?;
+    let again = format!("path --resume path.npz {joint} --unload --out again");
+    finished(&folder.0, &format!("{again} --charts svg"))?;
+    let picture = |name: &str| fs::read(folder.join("again").join(name));
+    assert!(picture("conductance.svg")?.starts_with(b"<svg width=\"560\" height=\"440\" "));
+    assert!(picture("conductance.png").is_err());
+    finished(&folder.0, &format!("{again} --charts png"))?;
+    for name in ["conductance.png", "unloading.png", "loading_curve.png"] {
+        assert!(picture(name)?.starts_with(b"\x89PNG"), "{name}");
+    }
+    let pdf = output(&folder.0, &format!("{again} --charts pdf"))?;
+    assert!(said(&pdf).contains("PDF is not written") && pdf.status.code() == Some(2));
     for file in ["path.csv", "interface.csv"] {
         let [a, b] = ["out", "again"].map(|name| fs::read(folder.join(&format!("{name}/{file}"))));
         assert_eq!(a?, b?, "{file}");

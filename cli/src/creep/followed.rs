@@ -4,9 +4,10 @@ use std::path::Path;
 
 use asperity::bed::Bed;
 use asperity::creep::{ControlHistory, Creep, CreepState, Relaxation, ViscoelasticBed};
+use asperity::leak::{Leak, Seal};
 use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
-use asperity::{BedError, ContactEvent, CreepError, Error};
+use asperity::{BedError, ContactEvent, CreepError, Error, LoadingPath};
 use asperity_cli::number::{at_least, quantity};
 use asperity_cli::outcome::Failure;
 
@@ -184,6 +185,37 @@ impl<'a> Followed<'a> {
         let failed = |error| Failure::new("cannot compute the fields of the last state", error);
         let made = self.last_fields(record, bed, pieces as usize);
         made.map_err(failed)
+    }
+
+    /// The leak at a time, before contact recedes.
+    pub(super) fn leak(
+        &self,
+        seal: &Seal,
+        path: &mut LoadingPath,
+        state: &CreepState,
+    ) -> Result<Leak, Error> {
+        let time = state.time;
+        let (gap, elastic) = match &self.solution {
+            Solution::Creep(creep) => {
+                let elastic = creep.path_state(time)?;
+                (path.fields_at(&elastic)?.gap, elastic)
+            }
+            Solution::Relaxation(relaxation) => {
+                (relaxation.gap(time, path)?, relaxation.path_state(time)?)
+            }
+            Solution::Bed(_) => {
+                return Err(CreepError::ContactRecedes {
+                    time: self.recedes.unwrap_or(time),
+                    effective_load: state.effective_load,
+                }
+                .into());
+            }
+        };
+        let mut contact_map = path.contact_map_at(&elastic)?;
+        if state.contact_nodes == 0 {
+            contact_map.fill(false);
+        }
+        seal.leak(&gap, &contact_map, (&path.grid(), path.problem().boundary()))
     }
 
     fn last_fields(

@@ -1,12 +1,14 @@
 //! `asperity creep`: viscoelastic bodies, from the record of an elastic path.
 //!
 //! Prints how contact grows over time and when it percolates and seals, and writes `creep.csv`, `creep.png`,
-//! `touch_times.png`, and for a load that is held `cycles.csv` and `cycles.png`.
+//! `touch_times.png`, for a load that is held `cycles.csv` and `cycles.png`, and with a fluid `leak_over_time.csv` and
+//! `leak_over_time.png`.
 
 mod charts;
 mod course;
 mod cycles;
 mod followed;
+mod leaks;
 mod object;
 mod options;
 mod table;
@@ -22,6 +24,7 @@ use crate::path::fields;
 use course::Task;
 use cycles::Sweep;
 use followed::Followed;
+use leaks::Leaks;
 pub(crate) use options::Options;
 
 /// Reads the record, follows the history on it, says what happens, and writes the files.
@@ -41,10 +44,15 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if followed.states.is_empty() {
         return followed.whole(&task, &options.record);
     }
+    let leaks = match &options.fluid {
+        Some(fluid) => Some(Leaks::new(&followed, &record, fluid.seal()?)?),
+        None => None,
+    };
     if options.json {
-        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref()));
+        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref(), leaks.as_ref()));
     }
     words::print(options, &task, &followed, &passages, sweep.as_ref());
+    leaks.iter().for_each(Leaks::print);
     let directory = match (&options.out, options.json) {
         (Some(directory), _) => directory.clone(),
         (None, false) => "out".into(),
@@ -59,6 +67,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outcome.written(charts::draw(&followed, &passages, has_corners, &directory.join("creep.png")));
     if let Some(drawn) = touch_times::draw(&record, &followed, &directory) {
         outcome.written(drawn);
+    }
+    if let Some(leaks) = &leaks {
+        outcome.written(leaks.write(&directory));
+        leaks.draw(&directory).into_iter().for_each(|drawn| outcome.written(drawn));
     }
     if let Some(Ok(sweep)) = &sweep {
         outcome.written(sweep.write(&directory.join("cycles.csv")));

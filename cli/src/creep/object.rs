@@ -7,6 +7,7 @@ use asperity::Error;
 use super::course::Task;
 use super::cycles::Sweep;
 use super::followed::{Followed, Method};
+use super::leaks::Leaks;
 use crate::passages::Passage;
 
 pub(super) fn object(
@@ -14,6 +15,7 @@ pub(super) fn object(
     followed: &Followed,
     passages: &[Passage<f64>],
     sweep: Option<&Result<Sweep, Error>>,
+    leaks: Option<&Leaks>,
 ) -> Value {
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| {
@@ -55,5 +57,8 @@ pub(super) fn object(
         cycles.collect::<Vec<_>>()
     });
     put("cycles", json!(cycles));
+    if let Some(leaks) = leaks {
+        put("leaks", leaks.object());
+    }
     Value::Object(object)
 }

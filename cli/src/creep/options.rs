@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use asperity::patches::Connectivity;
 use clap::Args;
 
+use crate::leak::Fluid;
 use crate::path::fields::Format;
 use crate::values::{FORCE, LENGTH, TIME, number};
 
@@ -17,7 +18,7 @@ use crate::values::{FORCE, LENGTH, TIME, number};
 /// effective_load, load, approach, contact_area_fraction, mean_gap), creep.png (area, mean gap and load over time, with
 /// the times at which the contact percolates and its last channel closes), touch_times.png (when each node touched),
 /// and for a load that is held cycles.csv and cycles.png (loops, and the energy lost in cycles of load against their
-/// frequency).
+/// frequency), and with the options of a fluid leak_over_time.csv and leak_over_time.png.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File that `asperity path --record` has written
@@ -73,13 +74,16 @@ pub(crate) struct Options {
 
     /// Print one JSON object: the last state with time, load, effective_load, approach, contact_nodes,
     /// contact_area_fraction and mean_gap; method, step_error, recedes, enough_until; percolates_x, percolates_y,
-    /// seals_x, seals_y (seconds, or null); cycles. Files are written only if --out is given
+    /// seals_x, seals_y (seconds, or null); cycles; leaks, with a fluid. Files are written only if --out is given
     #[arg(long)]
     pub(super) json: bool,
 
     /// Directory for the files, created if it does not exist [default: out]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+
+    #[command(flatten, next_help_heading = "Leak over time, while contact grows")]
+    pub(super) fluid: Option<Fluid>,
 }
 
 impl Options {

@@ -4,6 +4,7 @@
 //! load a map of the fluid pressure and one of the flux.
 
 mod charts;
+mod fluid;
 mod maps;
 mod table;
 mod words;
@@ -12,15 +13,15 @@ use std::path::PathBuf;
 
 use asperity::leak::{Leak, LeakCurve, Seal};
 use asperity::record::LoadingRecord;
-use asperity::surface::Axis;
 use asperity::{LoadingPath, LoadingState, Warning};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::advice;
-use crate::values::{FORCE, LENGTH, PRESSURE, VISCOSITY};
+use crate::values::FORCE;
+pub(crate) use fluid::Fluid;
 
 /// Leak rate through the gap along a recorded path: Reynolds' equation on the gap, contact closed
 ///
@@ -37,26 +38,8 @@ pub(crate) struct Options {
     #[arg(value_name = "FILE.npz")]
     record: PathBuf,
 
-    /// Viscosity of the fluid in Pa s: water 1e-3, air 1.8e-5, oils 1e-2 to 1
-    #[arg(long, value_name = "PA_S", allow_negative_numbers = true, value_parser = VISCOSITY.positive())]
-    viscosity: f64,
-
-    /// Pressure drop of the fluid from edge to edge
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
-    pressure_drop: f64,
-
-    /// The fluid is an ideal gas, which leaves at this absolute pressure: leak rates are volumes there, and its
-    /// throughput is told too
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
-    gas_outlet_pressure: Option<f64>,
-
-    /// Gap through which nothing flows any more, and through narrower ones [default: only contact closes]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
-    least_gap: Option<f64>,
-
-    /// Direction in which the fluid is pressed
-    #[arg(long, value_enum)]
-    along: Along,
+    #[command(flatten)]
+    fluid: Fluid,
 
     /// Load of a state of which fluid pressure and flux are drawn; may be given several times [default: half of
     /// the load at which the last channel closes, or the last state]
@@ -77,24 +60,6 @@ pub(crate) struct Options {
     out: PathBuf,
 }
 
-/// [`Axis`] on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Along {
-    /// The first index of an array, the columns of an image
-    X,
-    /// The second index of an array, the rows of an image
-    Y,
-}
-
-impl From<Along> for Axis {
-    fn from(along: Along) -> Self {
-        match along {
-            Along::X => Self::X,
-            Along::Y => Self::Y,
-        }
-    }
-}
-
 /// A record, its path, and what leaks.
 struct Work {
     record: LoadingRecord,
@@ -109,15 +74,7 @@ impl Work {
             .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
         let failed = |error| Failure::new("cannot compute a leak", error);
         let path = record.replay().map_err(failed)?;
-        let along = options.along.into();
-        let mut seal =
-            Seal::new(options.viscosity, options.pressure_drop, along).map_err(failed)?;
-        if let Some(gap) = options.least_gap {
-            seal = seal.with_least_gap(gap).map_err(failed)?;
-        }
-        if let Some(pressure) = options.gas_outlet_pressure {
-            seal = seal.with_gas(pressure).map_err(failed)?;
-        }
+        let seal = options.fluid.seal()?;
         Ok(Self { record, path, seal })
     }
 
@@ -207,7 +164,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Err(failure) => outcome.note(Err(failure)),
         }
     }
-    let warning = Warning::of_pressure_drop(options.pressure_drop, pressures);
+    let warning = Warning::of_pressure_drop(options.fluid.pressure_drop, pressures);
     let warning = warning.as_ref().map(advice::told);
     warning.iter().for_each(speech::warn);
     if options.json
