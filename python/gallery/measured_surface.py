@@ -29,11 +29,11 @@ print(f"{len(history)} events; at {last.mean_pressure / 1e6:.0f} MPa "
 
 x, y = (1e3 * side for side in surface.size)
 figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.7))
-heights = left.imshow(surface.z * 1e6, extent=(0, x, y, 0), cmap="cividis")
+heights = left.imshow(surface.z * 1e6, extent=(0, x, 0, y), origin="lower", cmap="cividis")
 left.set(title="heights", xlabel="x (mm)", ylabel="y (mm)")
 figure.colorbar(heights, ax=left, label="z (µm)", shrink=0.85)
 carried = np.ma.masked_where(~path.contact_map(), pressure / 1e9)
-map_ = right.imshow(carried, extent=(0, x, y, 0), cmap="inferno_r", interpolation="nearest")
+map_ = right.imshow(carried, extent=(0, x, 0, y), origin="lower", cmap="inferno_r", interpolation="nearest")
 right.set(title=f"contact under {last.mean_pressure / 1e6:.0f} MPa", xlabel="x (mm)")
 figure.colorbar(map_, ax=right, label="pressure (GPa)", shrink=0.85)
 for axes in (left, right):

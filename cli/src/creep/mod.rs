@@ -44,7 +44,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if followed.states.is_empty() {
         return followed.whole(&task, &options.record);
     }
-    let leaks = match &options.fluid {
+    let leaks = match &options.fluid.0 {
         Some(fluid) => Some(Leaks::new(&followed, &record, fluid.seal()?)?),
         None => None,
     };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use asperity::patches::Connectivity;
 use clap::Args;
 
-use crate::leak::Fluid;
+use crate::leak::PerhapsFluid;
 use crate::path::fields::Format;
 use crate::values::{FORCE, LENGTH, TIME, number};
 
@@ -83,7 +83,7 @@ pub(crate) struct Options {
     pub(super) out: Option<PathBuf>,
 
     #[command(flatten, next_help_heading = "Leak over time, while contact grows")]
-    pub(super) fluid: Option<Fluid>,
+    pub(super) fluid: PerhapsFluid,
 }
 
 impl Options {

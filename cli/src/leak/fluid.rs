@@ -3,7 +3,8 @@
 use asperity::leak::Seal;
 use asperity::surface::Axis;
 use asperity_cli::outcome::Failure;
-use clap::{Args, ValueEnum};
+use clap::builder::ArgPredicate;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 
 use crate::values::{LENGTH, PRESSURE, VISCOSITY};
 
@@ -47,6 +48,38 @@ impl From<Along> for Axis {
             Along::X => Self::X,
             Along::Y => Self::Y,
         }
+    }
+}
+
+/// A fluid if there is to be one: its options are needed together.
+#[derive(Debug, Clone)]
+pub(crate) struct PerhapsFluid(pub(crate) Option<Fluid>);
+
+impl Args for PerhapsFluid {
+    fn augment_args(command: Command) -> Command {
+        let beside_viscosity = |arg: Arg| arg.required(false).requires("viscosity");
+        let needed = ["pressure_drop", "along"];
+        let command = Fluid::augment_args(command).mut_arg("viscosity", |arg| {
+            arg.required(false).requires_ifs(needed.map(|name| (ArgPredicate::IsPresent, name)))
+        });
+        let others = needed.into_iter().chain(["gas_outlet_pressure", "least_gap"]);
+        others.fold(command, |command, name| command.mut_arg(name, beside_viscosity))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for PerhapsFluid {
+    fn from_arg_matches(given: &ArgMatches) -> Result<Self, clap::Error> {
+        let is_given = given.contains_id("viscosity");
+        Ok(Self(is_given.then(|| Fluid::from_arg_matches(given)).transpose()?))
+    }
+
+    fn update_from_arg_matches(&mut self, given: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(given)?;
+        Ok(())
     }
 }
 

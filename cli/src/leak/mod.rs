@@ -21,7 +21,8 @@ use clap::Args;
 
 use crate::advice;
 use crate::values::FORCE;
-pub(crate) use fluid::Fluid;
+use fluid::Fluid;
+pub(crate) use fluid::PerhapsFluid;
 
 /// Leak rate through the gap along a recorded path: Reynolds' equation on the gap, contact closed
 ///

@@ -40,6 +40,8 @@ fn chart(job: &Job, conduction: &Named, states: &[LoadingState]) -> Option<Chart
     };
     let (from, to) = ends(|point| point.0)?;
     let (least, most) = ends(|point| point.1)?;
+    // Whole decades, whose labels are short.
+    let (least, most) = (decade(least, f64::floor), decade(most, f64::ceil));
     let (title, unit) = match conduction.1.carrier() {
         Carrier::Heat => ("conductance of heat per nominal area", "W/(m² K)"),
         Carrier::Current => ("conductance of current per nominal area", "S/m²"),
@@ -47,8 +49,13 @@ fn chart(job: &Job, conduction: &Named, states: &[LoadingState]) -> Option<Chart
     Some(Chart {
         title: title.to_string(),
         x: Axis::logarithmic("mean pressure", "Pa", from, to).with_room(0.0, 0.02),
-        y: Axis::logarithmic("conductance", unit, least, most).with_room(0.04, 0.06),
+        y: Axis::logarithmic("conductance", unit, least, most),
         series: vec![Series::new("", BLUE, Style::Line, points)],
         legend: Corner::TopLeft,
     })
+}
+
+/// A power of ten beside a number.
+fn decade(value: f64, round: fn(f64) -> f64) -> f64 {
+    10_f64.powi(round(value.log10()) as i32)
 }
