@@ -81,8 +81,8 @@ fn a_held_load_is_that_of_the_reference() -> Done {
     Ok(())
 }
 
-/// Contact that grows is that of the elastic path at the effective load, and so is its leak: at once that of the load, in
-/// the end that of the load over what is left of the modulus.
+/// Contact that grows is that of the elastic path at the effective load, and so is its leak: at once that of the load,
+/// in the end that of the load over what is left of the modulus.
 #[test]
 fn a_rubber_leaks_less_and_less() -> Done {
     let folder = with_record("creep-leak")?;

@@ -35,7 +35,9 @@ left.legend()
 # The load at which each node touched holds every contact map.
 x, y = (1e3 * side for side in surface.size)
 activation = analysis.activation("mean_pressure") / 1e6
-image = right.imshow(activation, extent=(0, x, 0, y), origin="lower", cmap="viridis_r", vmax=2 * seal.mean_pressure / 1e6)
+image = right.imshow(
+    activation, extent=(0, x, 0, y), origin="lower", cmap="viridis_r", vmax=2 * seal.mean_pressure / 1e6
+)
 rows, columns = surface.shape
 centres = (np.arange(columns) + 0.5) * x / columns, (np.arange(rows) + 0.5) * y / rows
 sealed = (activation <= seal.mean_pressure / 1e6).astype(float)

@@ -35,8 +35,8 @@ impl Leaks {
     ) -> Result<Self, Failure> {
         if let Some(time) = followed.recedes {
             return Err(Failure::request(format!(
-                "contact recedes from t = {} on, and the gap is then that of no state of the path: the leak over time is that of \
-                 growing contact; give a --time before",
+                "contact recedes from t = {} on, and the gap is then that of no state of the path: the leak over \
+                 time is that of growing contact; give a --time before",
                 quantity(time, "s", 4)
             )));
         }

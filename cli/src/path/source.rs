@@ -93,8 +93,8 @@ fn shifted(
     for (shift, along, repeats) in [(ix, "x", repeats[0]), (iy, "y", repeats[1])] {
         if shift != 0 && !repeats {
             return Err(Failure::request(format!(
-                "--against-shift moves along {along} what has to repeat there, and this half-space does not: give --periodic, \
-                 or cut both files to the part that is to touch"
+                "--against-shift moves along {along} what has to repeat there, and this half-space does not: give \
+                 --periodic, or cut both files to the part that is to touch"
             )));
         }
     }

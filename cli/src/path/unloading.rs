@@ -15,8 +15,8 @@ use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::say;
 
-/// Writes and draws the states on unloading, from the last state of the path to the last touch, and the surface that is left;
-/// prints what the loop costs.
+/// Writes and draws the states on unloading, from the last state of the path to the last touch, and writes the surface
+/// that is left; prints what the loop costs.
 pub(super) fn write(
     job: &Job,
     solver: &mut Solver,

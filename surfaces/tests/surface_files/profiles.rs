@@ -1,5 +1,5 @@
-//! Profiles of instruments: one line of 7 points in steps of 2 µm, of heights 100 k − 250 nm, in every format that holds
-//! such lines. The third point is missing but in texts, which have no sign for that.
+//! Profiles of instruments: one line of 7 points in steps of 2 µm, of heights 100 k − 250 nm, in every format that
+//! holds such lines. The third point is missing but in texts, which have no sign for that.
 
 use std::fs;
 

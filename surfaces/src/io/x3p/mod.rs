@@ -4,8 +4,8 @@
 //! checksums. Archives packed by hand hold all of it in a folder. Points that were not measured are NaN, or, where
 //! heights are integers, marked in `bindata/valid.bin`, one bit for each point, the least significant first.
 //!
-//! A profile, of feature type PRF, is one line; its points may have positions of their own, which stand before the height
-//! of each. In the order of openGPS, x, y and z, an axis of even steps takes no number.
+//! A profile, of feature type PRF, is one line; its points may have positions of their own, which stand before the
+//! height of each. In the order of openGPS, x, y and z, an axis of even steps takes no number.
 //!
 //! The description and the data have to agree to the byte: a matrix whose sizes were wrong by one would be a sheared
 //! surface. Checksums that do not match are common in files that circulate, and only noted.
