@@ -90,10 +90,11 @@ fn quiet_is_quiet() -> Done {
 fn formats_are_listed() -> Done {
     let folder = Scratch::new("formats")?;
     let text = String::from_utf8(output(&folder.0, "formats")?.stdout)?;
-    assert_eq!(text.lines().count(), 17, "{text}");
+    assert_eq!(text.lines().count(), 18, "{text}");
     for (name, ending) in [
         ("NumPy", ".npy"),
         ("Digital Surf", ".sur .pro"),
+        ("Mountains", ".mnt"),
         ("ISO 5436-2", ".smd .prf"),
         ("Keyence", ".vk4 .vk6 .vk7"),
         ("Nanoscope", ".spm .di .000"),

@@ -8,7 +8,7 @@ macro_rules! file {
 }
 
 /// One file of each format and kind.
-pub(crate) const FILES: [&[u8]; 34] = [
+pub(crate) const FILES: [&[u8]; 36] = [
     file!("missing.npy"),
     file!("missing.gsf"),
     file!("masked.gwy"),
@@ -43,6 +43,8 @@ pub(crate) const FILES: [&[u8]; 34] = [
     file!("profile_f64.opdx"),
     file!("profile.prf"),
     file!("profile.smd"),
+    file!("plain_i32.mnt"),
+    file!("missing_i32.mnt"),
 ];
 
 /// How files of each format begin.

@@ -111,7 +111,7 @@ fn read(file: &[u8], options: &ReadOptions, with_layout: bool, scratch: &Scratch
     let path = scratch.file("file", file)?;
     let mut outcome = None;
     let memory = measure(|| outcome = Some(options.read(&path)));
-    let inflates = [&b"PK"[..], b"DSCOMPRESSED", b"VK6", b"VK7"];
+    let inflates = [&b"PK"[..], b"DSCOMPRESSED", b"VK6", b"VK7", b"\xd0\xcf\x11\xe0"];
     let inflates = inflates.iter().any(|magic| file.starts_with(magic));
     let limit = ANYWAY + file.len() as u64 * if inflates { INFLATED } else { MEMORY };
     ensure!(

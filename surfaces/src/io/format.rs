@@ -6,8 +6,8 @@ use std::path::Path;
 use super::raw::Parsed;
 use super::text::TextLayout;
 use super::{
-    al3d, gsf, gwy, ibw, metropro, nanoscope, nid, npy, opd, opdx, plu, prf, sdf, sur, text, vk4,
-    x3p,
+    al3d, gsf, gwy, ibw, metropro, mnt, nanoscope, nid, npy, opd, opdx, plu, prf, sdf, sur, text,
+    vk4, x3p,
 };
 
 /// A format of files with heights.
@@ -26,6 +26,8 @@ pub enum Format {
     X3p,
     /// Digital Surf, `.sur`, `.pro`.
     DigitalSurf,
+    /// Documents of Digital Surf's Mountains, `.mnt`.
+    Mountains,
     /// Alicona, `.al3d`.
     Alicona,
     /// Keyence, `.vk4`, `.vk6`, `.vk7`.
@@ -73,13 +75,14 @@ fn begins(file: &[u8], with: &[&[u8]]) -> bool {
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Npy,
         Self::GwyddionSimpleField,
         Self::Gwyddion,
         Self::Sdf,
         Self::X3p,
         Self::DigitalSurf,
+        Self::Mountains,
         Self::Alicona,
         Self::Keyence,
         Self::Nanoscope,
@@ -130,6 +133,12 @@ impl Format {
                 endings: &["sur", "pro"],
                 is_it: |file| begins(file, sur::BEGINS),
                 parse: |file, _| sur::parse(file),
+            },
+            Self::Mountains => Known {
+                name: "Mountains",
+                endings: &["mnt"],
+                is_it: |file| begins(file, &[mnt::BEGINS]),
+                parse: |file, _| mnt::parse(file),
             },
             Self::Alicona => Known {
                 name: "Alicona",
@@ -225,11 +234,7 @@ impl Format {
 
 /// What a file is that begins like one of a format that is not read, and what to do with it.
 pub(super) fn not_read(bytes: &[u8]) -> &'static str {
-    let known: [(&[u8], &str); 4] = [
-        (
-            b"\xd0\xcf\x11\xe0",
-            "; it is a compound document (OLE), as Digital Surf's .mnt: save the surface as .sur or .x3p",
-        ),
+    let known: [(&[u8], &str); 3] = [
         (b"\x89HDF", "; it is an HDF5 file, as .datx: export it as .x3p, .sdf or text"),
         (b"CDF", "; it is a NetCDF file: export it as .npy or text"),
         (b"II*\0", "; it is a TIFF picture: export heights as .x3p, .sdf or text"),

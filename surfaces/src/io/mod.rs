@@ -13,6 +13,7 @@
 //! | ISO 25178-71 and BCR | `.sdf` | ASCII and binary, 1.0 and 2.0, profiles | |
 //! | ISO 25178-72 | `.x3p` | all four types of number, missing points, profiles | float64 |
 //! | Digital Surf | `.sur`, `.pro` | plain and compressed, profiles; of a surface with colours, the surface | |
+//! | Mountains (Digital Surf) | `.mnt` | the surfaces in a document | |
 //! | Alicona | `.al3d` | depth image | |
 //! | Keyence | `.vk4`, `.vk6`, `.vk7` | height images | |
 //! | Nanoscope (Bruker, Veeco) | `.spm`, `.di`, `.000` | all images | |
@@ -77,6 +78,8 @@ mod al3d;
 #[doc(hidden)]
 pub mod archive;
 #[cfg(feature = "io")]
+mod compound;
+#[cfg(feature = "io")]
 mod format;
 #[cfg(all(test, feature = "io"))]
 mod full_disk;
@@ -92,6 +95,8 @@ mod lines;
 mod measured;
 #[cfg(feature = "io")]
 mod metropro;
+#[cfg(feature = "io")]
+mod mnt;
 #[cfg(feature = "io")]
 mod nanoscope;
 #[cfg(feature = "io")]

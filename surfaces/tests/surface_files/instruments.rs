@@ -214,3 +214,53 @@ fn colours_behind_a_surface_are_said_to_be_left_out() -> TestResult {
     assert_eq!(found.notes, ["the colours or intensities behind the heights are not read"]);
     Ok(())
 }
+
+/// Values beyond those that the file says to be heights are none, and that is told; documents without a surface are
+/// refused.
+#[test]
+fn documents_of_mountains() -> TestResult {
+    let found = read(&bytes("missing_i32.mnt"))?;
+    assert_eq!(found.title, "made");
+    assert_eq!(found.notes.len(), 1);
+    assert!(found.notes[0].starts_with("2 nodes are beyond the numbers"), "{:?}", found.notes);
+    let utf16 = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+    let (stream, other) = (utf16("ScopedContents"), utf16("ScopedDocument"));
+    let name = "plain_i32.mnt";
+    assert_refused(name, &[(&stream, &other)], "without the stream 'ScopedContents'");
+    // Four rows, 34 points, and blocks that do not fit together.
+    let item = |count: u32| [&[1, 0, 4, 0, 0, 0, 0, 0, 0, 0][..], &count.to_le_bytes()].concat();
+    assert_refused(name, &[(&item(5), &item(4))], "35 points, but 7 x 4 in a map");
+    assert_refused(name, &[(&item(35), &item(34))], "34 points, but 7 x 5 in a map");
+    let block = |place: u64, count: u32| [&place.to_le_bytes()[..], &count.to_le_bytes()].concat();
+    for (to, reason) in [
+        (block(0, 17), "are before it"),
+        (block(18, 16), "a block of 16 heights holds 65 bytes"),
+        (block(18, u32::MAX), "as a block claims"),
+    ] {
+        assert_refused(name, &[(&block(18, 17), &to)], reason);
+    }
+    Ok(())
+}
+
+/// Chains of sectors that run in circles or leave the file.
+#[test]
+fn chains_of_sectors_end() {
+    let file = bytes("plain_i32.mnt");
+    for word in (512..1024).step_by(4) {
+        for number in [0_u32, 1, 3, 500, u32::MAX - 2] {
+            let mut damaged = file.clone();
+            damaged[word..word + 4].copy_from_slice(&number.to_le_bytes());
+            // What is read all the same are the heights: the entry is of a sector that is not needed.
+            if let Ok(found) = read(&damaged) {
+                assert_eq!(
+                    (found.missing, found.heights.shape()),
+                    (0, (7, 5)),
+                    "{number} at {word}"
+                );
+            }
+        }
+    }
+    for end in 0..file.len() - 512 {
+        assert!(read(&file[..end]).is_err(), "{end} of {} bytes", file.len());
+    }
+}
