@@ -5,9 +5,9 @@
 //!
 //! A compound document, whose stream `ScopedContents` is a tree of items: a tag, a length, and data or further items.
 //! In some places the tag is left out. An object that has axes x and y, numbers, and an axis z is a surface. An axis
-//! has a spacing and an offset with their units. Numbers are i32 in blocks of zlib, in any order, each behind its place,
-//! its count and its compressed length. The axis z also says the least and the greatest number: what lies beyond is no
-//! height.
+//! has a spacing and an offset with their units. Numbers are i32 in blocks of zlib, in any order, each behind its
+//! place, its count and its compressed length. The axis z also says the least and the greatest number: what lies beyond
+//! is no height.
 
 use std::io::Read;
 
