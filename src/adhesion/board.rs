@@ -1,13 +1,8 @@
 //! The watched nodes of a window: what each does until something happens, and what an event changes.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::DenseSolveCore;
-use faer::{Accum, Mat, MatMut, Par, Side, unzip, zip};
-
+use super::answers::Answers;
 use super::law::CohesiveLaw;
 use super::state::NodeState;
-use crate::parallel::vectorized;
-use crate::updater::Schur;
 
 /// Pivots below this part of a compliance count as unstable.
 const LEAST_PIVOT: f64 = 1e-10;
@@ -41,18 +36,19 @@ pub(crate) struct Change {
 /// Pressures and gaps of watched nodes along a parameter, with the matrix of how each answers to the others.
 ///
 /// Of every node one of two quantities is given and the other answers. Where its gap is 0 the pressure answers; on the
-/// slope of the law it does too, and gap − p/k = h₂ is given; elsewhere the gap answers to a pressure that is given.
-/// The matrix has the answers of its rows to what is given of its columns. A node that changes from one kind to another
-/// is a pivot: `T_ij`, `i, j ≠ s`, loses `T_is T_sj / T_ss`. The pivot of a node that touches is positive, and that of
-/// one that becomes soft, T_ss − 1/k, is negative in a stable state: it is quasi-definite as that of a path with a
-/// hardness, but its nodes also go back. Two more rows are sums of all pressures and of all gaps, and one more column
-/// is the rates along the parameter.
-#[derive(Debug)]
+/// slope of the law it does too, and gap − p/k = h₂ is given; elsewhere the gap answers to a pressure that is given. A
+/// node that changes from one kind to another is a pivot of the matrix. That of a node that touches is positive, and that
+/// of one that becomes soft, T_ss − 1/k, is negative in a stable state: it is quasi-definite as that of a path with a
+/// hardness, but its nodes also go back. Soft nodes that are not watched answer all the time.
+#[derive(Debug, Clone)]
 pub(super) struct Board {
     law: CohesiveLaw,
     pub(super) rows: Vec<Row>,
-    /// Column by column, of `rows + 2` numbers each.
-    matrix: Vec<f64>,
+    answers: Answers,
+    /// Rates along the parameter of what answers, and of the sums of all pressures and of all gaps.
+    along: Vec<f64>,
+    /// The same along the approach while the pull of a row is the parameter, if the window has begun along the approach.
+    along_approach: Option<Vec<f64>>,
     /// Sums of all pressures and of all gaps.
     pub(super) sums: [f64; 2],
     /// Nodes whose traction is held, those that are carried first.
@@ -63,20 +59,19 @@ pub(super) struct Board {
     sign: f64,
     /// Nodes in contact, on the whole grid.
     pub(super) contact_nodes: usize,
+    /// Soft nodes that are not watched.
+    other_soft: usize,
     /// Whether a pivot was so small that the window should end.
     pub(super) is_worn: bool,
     pub(super) changes: Vec<Change>,
 }
 
 /// What a window begins with.
-pub(super) struct Beginning<'a> {
+pub(super) struct Beginning {
     pub(super) law: CohesiveLaw,
     pub(super) sign: f64,
-    /// Those out of contact, of which the soft ones come first, and those in contact.
     pub(super) rows: Vec<Row>,
-    pub(super) schur: &'a Schur,
-    /// By row: what a unit of what is given makes of both sums, soft nodes as if they were not.
-    pub(super) sums_by_row: Vec<[f64; 2]>,
+    pub(super) answers: Answers,
     /// By row: how fast its quantity that answers grows along the parameter.
     pub(super) rates: Vec<f64>,
     /// Sums of all pressures and of all gaps, with their rates.
@@ -84,42 +79,31 @@ pub(super) struct Beginning<'a> {
     pub(super) held: Vec<(usize, f64)>,
     pub(super) is_carried: bool,
     pub(super) contact_nodes: usize,
+    /// Soft nodes that are not watched.
+    pub(super) other_soft: usize,
 }
 
 impl Board {
-    pub(super) fn new(begin: Beginning<'_>) -> Self {
-        let size = begin.rows.len();
-        let height = size + 2;
-        let mut matrix = vec![0.0; height * (size + 1)];
-        for (j, column) in matrix.chunks_exact_mut(height).take(size).enumerate() {
-            // The other quantity is given of those in contact: a gap, of which the matrix of the updater has the
-            // negative.
-            let sign = if begin.rows[j].state == NodeState::Contact { -1.0 } else { 1.0 };
-            for (i, value) in column[..size].iter_mut().enumerate() {
-                *value = sign * begin.schur.entry(i, j);
-            }
-            column[size..].copy_from_slice(&begin.sums_by_row[j]);
-        }
+    pub(super) fn new(begin: Beginning) -> Self {
         let carried = begin.held.first().filter(|_| begin.is_carried);
         let carried =
             carried.and_then(|&(node, _)| begin.rows.iter().position(|row| row.node == node));
-        let mut board = Self {
+        let rates = begin.rates.iter().copied().chain(begin.sums.iter().map(|[_, rate]| *rate));
+        Self {
             law: begin.law,
+            along: rates.collect(),
+            along_approach: None,
             rows: begin.rows,
-            matrix,
+            answers: begin.answers,
             sums: begin.sums.map(|[value, _]| value),
             held: begin.held,
             carried,
             sign: begin.sign,
             contact_nodes: begin.contact_nodes,
+            other_soft: begin.other_soft,
             is_worn: false,
             changes: Vec::new(),
-        };
-        board.soften_first();
-        // Behind these pivots, which have their part in the rates already.
-        let rates = begin.rates.iter().copied().chain(begin.sums.iter().map(|[_, rate]| *rate));
-        board.matrix[height * size..].iter_mut().zip(rates).for_each(|(to, rate)| *to = rate);
-        board
+        }
     }
 
     fn size(&self) -> usize {
@@ -127,7 +111,7 @@ impl Board {
     }
 
     fn entry(&self, row: usize, column: usize) -> f64 {
-        self.matrix[row + (self.size() + 2) * column]
+        self.answers.entry(row, column)
     }
 
     fn compliance(&self) -> f64 {
@@ -136,72 +120,20 @@ impl Board {
 
     /// Exchanges what is given of a node and what answers.
     fn pivot(&mut self, place: usize) {
-        let height = self.size() + 2;
-        let inverse = self.entry(place, place).recip();
-        let mut own = self.matrix[height * place..height * (place + 1)].to_vec();
-        own[place] = 0.0;
-        let matrix = &mut self.matrix;
-        vectorized(
-            #[inline(always)]
-            || {
-                for (j, column) in matrix.chunks_exact_mut(height).enumerate() {
-                    let factor = column[place] * inverse;
-                    if j != place && factor != 0.0 {
-                        column.iter_mut().zip(&own).for_each(|(value, own)| *value -= factor * own);
-                        column[place] = -factor;
-                    }
-                }
-            },
-        );
-        own.iter_mut().for_each(|value| *value *= inverse);
-        own[place] = inverse;
-        self.matrix[height * place..height * (place + 1)].copy_from_slice(&own);
-    }
-
-    /// Puts all soft nodes, which come first, on the slope of the law, as one pivot: with A = T_ss − 1/k
-    ///
-    /// ```text
-    /// T_ss ← A⁻¹,   T_sr ← −A⁻¹ T_sr,   T_rs ← T_rs A⁻¹,   T_rr ← T_rr − T_rs A⁻¹ T_sr
-    /// ```
-    fn soften_first(&mut self) {
-        let (size, height) = (self.size(), self.size() + 2);
-        let soft = self.rows.iter().take_while(|row| row.state == NodeState::Soft).count();
-        for place in 0..soft {
-            self.shift(place, -self.compliance());
-        }
-        let minus = Mat::from_fn(soft, soft, |i, j| -self.matrix[i + height * j]);
-        let Ok(factor) = minus.llt(Side::Lower) else {
-            // Not stable, which the solution of this state has excluded: one by one, whatever comes of it.
-            return (0..soft).for_each(|place| self.pivot(place));
-        };
-        let inverse = factor.inverse();
-        let all =
-            MatMut::from_column_major_slice_mut(&mut self.matrix[..height * size], height, size);
-        let (own, beside, below, rest) = all.split_at_mut(soft, soft);
-        let (mut own, mut beside, mut below, rest) = (own, beside, below, rest);
-        let answered = &inverse * beside.as_ref();
-        matmul(rest, Accum::Add, below.as_ref(), answered.as_ref(), 1.0, Par::Seq);
-        beside.copy_from(&answered);
-        let taken = below.as_ref() * &inverse;
-        zip!(&mut below, &taken).for_each(|unzip!(to, value)| *to = -value);
-        zip!(&mut own, &inverse).for_each(|unzip!(to, value)| *to = -value);
+        let rates = [&mut self.along].into_iter().chain(self.along_approach.as_mut());
+        self.answers.pivot(place, rates);
     }
 
     /// Puts a node whose pressure is given on the slope of the law.
     fn soften(&mut self, place: usize) {
-        self.shift(place, -self.compliance());
+        self.answers.shift(place, -self.compliance());
         self.pivot(place);
     }
 
     /// Takes it off the slope.
     fn harden(&mut self, place: usize) {
         self.pivot(place);
-        self.shift(place, self.compliance());
-    }
-
-    fn shift(&mut self, place: usize, by: f64) {
-        let height = self.size() + 2;
-        self.matrix[place + height * place] += by;
+        self.answers.shift(place, self.compliance());
     }
 
     /// The pivot with which a node whose pressure is given would be soft, over 1/k: negative where that is stable.
@@ -211,7 +143,7 @@ impl Board {
 
     /// Rates of pressure and gap.
     pub(super) fn rates(&self, place: usize) -> [f64; 2] {
-        let rate = self.entry(place, self.size());
+        let rate = self.along[place];
         match self.rows[place].state {
             NodeState::Contact => [rate, 0.0],
             NodeState::Soft => [rate, rate * self.compliance()],
@@ -222,7 +154,7 @@ impl Board {
 
     /// Rates of the sums of all pressures and of all gaps.
     pub(super) fn sum_rates(&self) -> [f64; 2] {
-        [0, 1].map(|k| self.entry(self.size() + k, self.size()))
+        [0, 1].map(|k| self.along[self.size() + k])
     }
 
     /// When something happens next, to which row: of those that tie the one of the lowest node.
@@ -357,6 +289,12 @@ impl Board {
         }
     }
 
+    /// Whether what happens next to a row takes others that are soft and not watched: they have to be held.
+    pub(super) fn lacks_others(&self, place: usize) -> bool {
+        let is_stable = || self.entry(place, place) * self.compliance() > LEAST_PIVOT;
+        self.rows[place].state == NodeState::Contact && self.other_soft > 0 && !is_stable()
+    }
+
     /// Opens a gap. Where others would not be stable then, the traction of those that it would change most is held
     /// first.
     fn part(&mut self, place: usize) {
@@ -364,8 +302,8 @@ impl Board {
         let mut part = self.entry(place, place) * self.compliance();
         while part.is_nan() || part <= LEAST_PIVOT {
             let soft = (0..self.size()).filter(|&row| self.rows[row].state == NodeState::Soft);
-            let most = soft
-                .max_by(|&a, &b| self.entry(a, place).abs().total_cmp(&self.entry(b, place).abs()));
+            let column = self.answers.column(place);
+            let most = soft.max_by(|&a, &b| column[a].abs().total_cmp(&column[b].abs()));
             let Some(row) = most else {
                 break;
             };
@@ -381,6 +319,26 @@ impl Board {
             self.soften_or_hold(place, stress);
         } else {
             self.change(place, NodeState::Cohesive);
+        }
+    }
+
+    /// Makes the pull of the first node that is held the parameter.
+    pub(super) fn carry_next(&mut self) {
+        let node = self.held.first().map(|&(node, _)| node);
+        self.carried = self.rows.iter().position(|row| Some(row.node) == node);
+        if let Some(place) = self.carried {
+            let mut rates = self.answers.column(place);
+            rates.iter_mut().for_each(|rate| *rate *= -self.sign);
+            let before = std::mem::replace(&mut self.along, rates);
+            self.along_approach.get_or_insert(before);
+        }
+    }
+
+    /// Makes the approach the parameter again.
+    pub(super) fn end_carrying(&mut self) {
+        self.carried = None;
+        if let Some(rates) = self.along_approach.take() {
+            self.along = rates;
         }
     }
 
@@ -441,13 +399,14 @@ impl Board {
         self.carried.is_some()
     }
 
-    /// Nodes on the slope, and those pulled with the greatest stress; all of them are watched.
+    /// Nodes on the slope, and those pulled with the greatest stress.
     pub(super) fn pulled(&self) -> [usize; 2] {
-        [NodeState::Soft, NodeState::Cohesive]
-            .map(|state| self.rows.iter().filter(|row| row.state == state).count())
+        let [soft, cohesive] = [NodeState::Soft, NodeState::Cohesive]
+            .map(|state| self.rows.iter().filter(|row| row.state == state).count());
+        [soft + self.other_soft, cohesive]
     }
 
-    /// The energy of adhesion of all nodes over the area of a cell.
+    /// The energy of adhesion of all nodes but soft ones that are not watched, over the area of a cell.
     pub(super) fn energy(&self) -> f64 {
         let pulled = self.rows.iter().map(|row| match row.state {
             NodeState::Soft => -0.5 * row.pressure * row.pressure * self.compliance(),

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use faer::prelude::Solve;
-use faer::{Mat, Side};
-
+use super::answers::Answers;
 use super::law::CohesiveLaw;
+use super::soft::{Half, Soft};
 use super::state::NodeState;
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
@@ -75,25 +74,39 @@ pub(super) struct Body {
     pub(super) budget: usize,
     updater: RecursiveCholesky,
     contact: ContactSequence,
-    /// The soft nodes, those that have been so longest first: the factor knows their columns again.
+    /// The soft nodes, in the order in which they are watched.
     soft: Vec<usize>,
-    /// Nodes out of contact whose columns the factor has, in its order.
-    known: Vec<usize>,
-    /// Of the window that has been played last, until nodes have left the contact.
-    window: Option<Window>,
-    /// The matrix S_SS of the soft nodes, if it is known.
-    soft_matrix: Option<Mat<f64>>,
+    /// The factor of their matrix, if it is known.
+    soft_factor: Option<Soft>,
+    watched: Watched,
+    /// What has joined last, until something else happens.
+    joined: Option<Joined>,
     /// The least pivot of M over 1/k: gaps of soft nodes are known so many times less exactly than others.
     least_pivot: f64,
     convolution: Convolution,
 }
 
-/// What a window has watched, and the matrix of that.
-#[derive(Debug)]
-struct Window {
-    /// Out of contact, in the order of its rows.
+/// The nodes whose columns the updater has, in its order, and the matrix of these.
+#[derive(Debug, Default)]
+struct Watched {
     nodes: Vec<usize>,
     schur: Schur,
+}
+
+/// What it takes to let nodes leave again that have joined last.
+#[derive(Debug)]
+struct Joined {
+    nodes: usize,
+    /// Of the nodes that did not join, in their order: columns of a matrix whose products with themselves the others took.
+    columns: Vec<f64>,
+}
+
+/// What the rows of a window do to soft nodes.
+pub(super) struct Rows {
+    /// The columns of the soft nodes, by row.
+    half: Half,
+    /// 1, or −1 where what is given of a row lowers the pressures of soft nodes as its column in `half` raises them.
+    signs: Vec<f64>,
 }
 
 /// What a solution leaves in gaps that are known, relative to the range and the greatest length.
@@ -106,19 +119,14 @@ impl Body {
             convolution: problem.convolution(),
             updater: RecursiveCholesky::new(),
             soft: Vec::new(),
-            known: Vec::new(),
-            window: None,
-            soft_matrix: None,
+            soft_factor: None,
+            watched: Watched::default(),
+            joined: None,
             least_pivot: 1.0,
             problem,
             law,
             budget,
         }
-    }
-
-    /// The contact that the factor holds, in its order.
-    pub(super) fn contact(&self) -> &ContactSequence {
-        &self.contact
     }
 
     /// The soft nodes.
@@ -131,90 +139,250 @@ impl Body {
         self.least_pivot
     }
 
-    /// Nodes out of contact whose columns the factor has: those that are watched first, in this order, cost no
-    /// substitution.
-    pub(super) fn known(&self) -> &[usize] {
-        &self.known
-    }
-
-    /// Keeps the matrix of what a window watches, from which that of the next one follows.
-    pub(super) fn keep(&mut self, nodes: Vec<usize>, schur: Schur) {
-        self.window = Some(Window { nodes, schur });
-    }
-
     /// Lets factor and soft nodes follow: nodes that left the contact leave the factor, others join it.
     pub(super) fn follow(&mut self, front: &Front) -> Result<(), Error> {
         let is = |node: usize, state| front.nodes[node] == state;
         let places = self.contact.order().iter().copied().enumerate();
         let left = places.filter(|&(_, node)| !is(node, NodeState::Contact));
         let left: Vec<Left> = left.map(|(position, node)| Left { node, position }).collect();
+        self.joined = None;
         if !left.is_empty() {
-            for left in &left {
-                self.contact.remove(left.node)?;
-            }
-            self.updater.release(&self.problem, &self.contact, &left)?;
-            // It forgets all columns.
-            self.known.clear();
+            self.leave(&left)?;
         }
-        self.soft_matrix = None;
-        let window = self.window.take().filter(|_| left.is_empty());
         let nodes = 0..front.nodes.len();
         let joined: Vec<usize> = nodes
-            .clone()
             .filter(|&node| is(node, NodeState::Contact) && !self.contact.contains(node))
             .collect();
-        let window = match window {
-            Some(mut window) if joined.iter().all(|node| window.nodes.contains(node)) => {
-                self.join(&mut window, &joined)?;
-                Some(window)
-            }
-            _ if joined.is_empty() => None,
-            _ => {
+        if !joined.is_empty() {
+            let places = self.watched.places(front.nodes.len());
+            let places: Option<Vec<usize>> = joined.iter().map(|&node| places[node]).collect();
+            if let Some(places) = places {
+                self.join(&joined, &places)?;
+            } else {
+                self.watched = Watched::default();
                 let contact = &mut self.contact;
                 join_all(&mut self.updater, &self.problem, contact, &joined, self.budget)?;
-                self.known.clear();
-                None
-            }
-        };
-        self.soft.retain(|&node| is(node, NodeState::Soft));
-        let mut is_there = vec![false; front.nodes.len()];
-        self.soft.iter().for_each(|&node| is_there[node] = true);
-        // Those whose columns are known first, in their order.
-        for node in self.known.iter().copied().chain(nodes) {
-            if is(node, NodeState::Soft) && !is_there[node] {
-                is_there[node] = true;
-                self.soft.push(node);
             }
         }
-        self.soft_matrix = window.and_then(|window| window.matrix_of(&self.soft));
+        self.list_soft(front);
         Ok(())
     }
 
-    /// Lets watched nodes join, with the columns that the factor has of them, and reduces the matrix of the others.
-    fn join(&mut self, window: &mut Window, joined: &[usize]) -> Result<(), Error> {
-        if joined.is_empty() {
-            return Ok(());
+    /// Goes back to a front from the one that has been followed to last.
+    pub(super) fn go_back(&mut self, front: &Front) -> Result<(), Error> {
+        if let Some(joined) = self.joined.take() {
+            self.contact.truncate(self.contact.len() - joined.nodes);
+            self.updater.truncate(&self.problem, &self.contact)?;
+            self.watched.schur.add_gram(1.0, &joined.columns);
         }
-        let watched = window.schur.size();
-        let needed = self.updater.bytes(self.contact.len() + joined.len(), watched);
-        let needed = needed.saturating_add(WindowFactor::bytes(watched));
+        // What else there may be: nodes that have left.
+        self.follow(front)
+    }
+
+    fn list_soft(&mut self, front: &Front) {
+        let is_soft = |node: &usize| front.nodes[*node] == NodeState::Soft;
+        self.soft_factor = None;
+        self.soft = self.watched.nodes.iter().copied().filter(is_soft).collect();
+        let mut is_there = vec![false; front.nodes.len()];
+        self.soft.iter().for_each(|&node| is_there[node] = true);
+        self.soft.extend((0..front.nodes.len()).filter(|node| is_soft(node) && !is_there[*node]));
+    }
+
+    /// Lets watched nodes join, with the columns that the updater has of them, and reduces the matrix of the others.
+    fn join(&mut self, joined: &[usize], places: &[usize]) -> Result<(), Error> {
+        let watched = self.watched.nodes.len();
+        self.check_budget(self.contact.len() + joined.len(), watched)?;
+        let mut touched = WindowFactor::default();
+        touched.reset(watched, joined.len());
+        for &place in places {
+            let pushed = touched.push(&mut self.watched.schur, place, 1.0);
+            pushed.map_err(|_| Error::FactorizationFailed { nodes: joined.len() })?;
+        }
+        touched.finish(&mut self.watched.schur);
+        joined.iter().try_for_each(|&node| self.contact.push(node))?;
+        self.updater.join(&self.problem, &self.contact, &touched)?;
+        let mut is_left = vec![true; watched];
+        places.iter().for_each(|&place| is_left[place] = false);
+        let left: Vec<usize> = (0..watched).filter(|&place| is_left[place]).collect();
+        let columns = (0..joined.len()).flat_map(|event| {
+            let column = touched.column(event);
+            left.iter().map(move |&place| column[place])
+        });
+        self.joined = Some(Joined { nodes: joined.len(), columns: columns.collect() });
+        self.watched.schur = self.watched.schur.part(&left, 0)?;
+        self.watched.nodes = left.iter().map(|&place| self.watched.nodes[place]).collect();
+        Ok(())
+    }
+
+    /// Lets nodes leave the contact, which are watched from then on if they were.
+    fn leave(&mut self, left: &[Left]) -> Result<(), Error> {
+        let places = self.watched.places(self.problem.initial_gap().len());
+        left.iter().try_for_each(|left| self.contact.remove(left.node).map(|_| ()))?;
+        let places: Option<Vec<usize>> = left.iter().map(|left| places[left.node]).collect();
+        let Some(places) = places else {
+            self.watched = Watched::default();
+            return self.updater.release(&self.problem, &self.contact, left);
+        };
+        let watched = self.watched.nodes.len();
+        let mut touched = WindowFactor::default();
+        touched.reset(watched, left.len());
+        for &place in &places {
+            let pushed = touched.push(&mut self.watched.schur, place, -1.0);
+            pushed.map_err(|_| Error::FactorizationFailed { nodes: left.len() })?;
+        }
+        touched.finish(&mut self.watched.schur);
+        self.updater.release_watched(&self.problem, &self.contact, left)?;
+        let mut stays = vec![true; watched];
+        places.iter().for_each(|&place| stays[place] = false);
+        let stay: Vec<usize> = (0..watched).filter(|&place| stays[place]).collect();
+        self.watched.schur = touched.opened(&self.watched.schur, &stay)?;
+        self.watched.nodes = stay.iter().map(|&place| self.watched.nodes[place]).collect();
+        self.watched.nodes.extend(left.iter().map(|left| left.node));
+        Ok(())
+    }
+
+    fn check_budget(&self, contact: usize, watched: usize) -> Result<(), Error> {
+        let needed = self.updater.bytes(contact, watched);
+        // The matrix twice, that of the soft nodes with its factor, and the columns of a window.
+        let needed = needed.saturating_add(WindowFactor::bytes(watched).saturating_mul(3));
         if needed > self.budget {
             let (budget, nodes_that_fit) = (self.budget, self.contact.len());
             return Err(Error::MemoryBudget { needed, budget, nodes_that_fit });
         }
-        let mut touched = WindowFactor::default();
-        touched.reset(watched, joined.len());
-        for node in joined {
-            let place = window.nodes.iter().position(|other| other == node);
-            let place = place.ok_or(Error::FactorizationFailed { nodes: watched })?;
-            let pushed = touched.push(&mut window.schur, place, 1.0);
-            pushed.map_err(|_| Error::FactorizationFailed { nodes: joined.len() })?;
-        }
-        touched.finish(&mut window.schur);
-        joined.iter().try_for_each(|&node| self.contact.push(node))?;
-        self.updater.join(&self.problem, &self.contact, &touched)?;
-        self.known.retain(|node| !joined.contains(node));
         Ok(())
+    }
+
+    /// Watches some nodes; those that were watched before come first.
+    fn watch(&mut self, nodes: &[usize]) -> Result<(), Error> {
+        let mut is_new = vec![false; self.problem.initial_gap().len()];
+        nodes.iter().for_each(|&node| is_new[node] = true);
+        let before = self.watched.nodes.iter().enumerate();
+        let kept: Vec<usize> = before.filter(|(_, node)| is_new[**node]).map(|(k, _)| k).collect();
+        let mut watched: Vec<usize> = kept.iter().map(|&place| self.watched.nodes[place]).collect();
+        watched.iter().for_each(|&node| is_new[node] = false);
+        for &node in nodes {
+            if std::mem::take(&mut is_new[node]) {
+                watched.push(node);
+            }
+        }
+        self.joined = None;
+        if watched == self.watched.nodes {
+            return Ok(());
+        }
+        self.check_budget(self.contact.len(), watched.len())?;
+        let mut schur = self.watched.schur.part(&kept, watched.len())?;
+        let places = self.contact.places();
+        let with_positions: Vec<_> = watched.iter().map(|&node| (node, places[node])).collect();
+        self.watched = Watched::default();
+        let (problem, contact) = (&self.problem, &self.contact);
+        self.updater.watch_beside(problem, contact, &with_positions, kept.len(), &mut schur)?;
+        self.watched = Watched { nodes: watched, schur };
+        // Those that were watched before come in the same order, and so do the soft ones among them.
+        let places = self.watched.places(self.problem.initial_gap().len());
+        let places: Option<Vec<usize>> = self.soft.iter().map(|&node| places[node]).collect();
+        self.soft_factor = self.soft_factor.take().zip(places).map(|(soft, places)| soft.at(places));
+        Ok(())
+    }
+
+    /// The factor of the soft nodes.
+    fn factor_soft(&mut self) -> Result<&Soft, Error> {
+        let unstable = Error::FactorizationFailed { nodes: self.contact.len() + self.soft.len() };
+        let factor = match self.soft_factor.take() {
+            Some(factor) => factor,
+            None => {
+                let places = self.watched.places(self.problem.initial_gap().len());
+                if self.soft.iter().any(|&node| places[node].is_none()) {
+                    let all: Vec<usize> =
+                        self.watched.nodes.iter().chain(&self.soft).copied().collect();
+                    self.watch(&all)?;
+                }
+                let places = self.watched.places(self.problem.initial_gap().len());
+                let mut places: Vec<usize> =
+                    self.soft.iter().filter_map(|&node| places[node]).collect();
+                places.sort_unstable();
+                self.soft = places.iter().map(|&place| self.watched.nodes[place]).collect();
+                let compliance = self.law.slope().recip();
+                Soft::of(&self.watched.schur, places, compliance).ok_or(unstable)?
+            }
+        };
+        self.least_pivot = factor.least_pivot;
+        Ok(self.soft_factor.insert(factor))
+    }
+
+    /// What some nodes answer to each other and what sums of pressures and of gaps do, with all soft nodes on their slope.
+    pub(super) fn rows(&mut self, front: &Front, nodes: &[usize]) -> Result<(Answers, Rows), Error> {
+        let all: Vec<usize> = self.soft.iter().chain(nodes).copied().collect();
+        self.watch(&all)?;
+        let sums = self.sums_by_node()?;
+        self.factor_soft()?;
+        let places = self.watched.places(front.nodes.len());
+        let of_rows: Vec<usize> = nodes.iter().filter_map(|&node| places[node]).collect();
+        let too_few = Error::LengthMismatch { expected: nodes.len(), found: of_rows.len() };
+        let Some(soft) = self.soft_factor.as_ref().filter(|_| of_rows.len() == nodes.len()) else {
+            return Err(too_few);
+        };
+        let states: Vec<NodeState> = nodes.iter().map(|&node| front.nodes[node]).collect();
+        let (size, width) = (nodes.len(), nodes.len() + 2);
+        let schur = &self.watched.schur;
+        let mut columns = vec![0.0; soft.len() * width];
+        let of_soft = soft.places().iter().zip(&self.soft);
+        for ((&place, &node), values) in of_soft.zip(columns.chunks_exact_mut(width)) {
+            for ((value, state), &row) in values.iter_mut().zip(&states).zip(&of_rows) {
+                *value = match state {
+                    NodeState::Soft => f64::from(u8::from(row == place)),
+                    _ => schur.entry(place, row),
+                };
+            }
+            (values[size], values[size + 1]) = (sums[0][node], sums[1][node]);
+        }
+        let half = soft.half(columns, width);
+        let gram = half.gram().ok_or(Error::FactorizationFailed { nodes: width })?;
+        let mut matrix = vec![0.0; width * size];
+        for (j, column) in matrix.chunks_exact_mut(width).enumerate() {
+            // A gap is given of those in contact, of which the matrix of the updater has the negative.
+            let sign = if states[j] == NodeState::Contact { -1.0 } else { 1.0 };
+            let is_soft = states[j] == NodeState::Soft;
+            for (i, value) in column.iter_mut().enumerate() {
+                let through = gram.entry(i, j);
+                *value = match states.get(i) {
+                    _ if is_soft => -through,
+                    Some(NodeState::Soft) => sign * through,
+                    Some(_) => sign * (schur.entry(of_rows[i], of_rows[j]) + through),
+                    None => sums[i - size][nodes[j]] + sign * through,
+                };
+            }
+        }
+        let with_pressure = |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
+        let signs = states.iter().map(|state| if with_pressure(state) { -1.0 } else { 1.0 });
+        let answers = Answers::new(matrix, states.iter().map(with_pressure).collect());
+        Ok((answers, Rows { half, signs: signs.collect() }))
+    }
+
+    /// Sums of the squares of the pressures of soft nodes that are no rows, for each of some lists of what is given of the
+    /// rows, and what the approach makes of these pressures by itself in so long.
+    pub(super) fn squares(
+        &self,
+        rows: &Rows,
+        is_row: impl Fn(usize) -> bool,
+        field: &Field,
+        given: &[(f64, Vec<f64>)],
+    ) -> Vec<f64> {
+        let Some(soft) = &self.soft_factor else { return vec![0.0; given.len()] };
+        let factors: Vec<f64> = given
+            .iter()
+            .flat_map(|(_, given)| given.iter().zip(&rows.signs).map(|(given, sign)| given * sign))
+            .collect();
+        let answers = soft.combine(&rows.half, rows.signs.len(), &factors);
+        let is_other: Vec<bool> = self.soft.iter().map(|&node| !is_row(node)).collect();
+        let lists = given.iter().enumerate().map(|(list, (time, _))| {
+            let nodes = self.soft.iter().zip(&is_other).enumerate().filter(|(_, (_, other))| **other);
+            let squares = nodes.map(|(place, (&node, _))| {
+                let alone = field.pressure[0][node] + time * field.pressure[1][node];
+                (alone + answers[(place, list)]).powi(2)
+            });
+            squares.sum()
+        });
+        lists.collect()
     }
 
     /// Solves on the contact for two right-hand sides over the grid, of which only the values there count: what is left
@@ -307,6 +475,47 @@ impl Body {
         Ok(field)
     }
 
+    /// Pressures and gaps behind a window that nothing has followed yet: of its rows they are known, and contact and soft
+    /// nodes answer as before it. No rates.
+    pub(super) fn preview(
+        &mut self,
+        front: &Front,
+        (field, time): (&Field, f64),
+        rows: &Rows,
+        (ended, given): (&[(usize, [f64; 2])], Vec<f64>),
+    ) -> Result<Field, Error> {
+        let nodes = front.nodes.len();
+        let mut pressure = field.pressure[0].clone();
+        let answers = self.soft_factor.as_ref().map(|soft| {
+            let factors: Vec<f64> = given.iter().zip(&rows.signs).map(|(x, sign)| x * sign).collect();
+            soft.combine(&rows.half, rows.signs.len(), &factors)
+        });
+        if let Some(answers) = answers {
+            for (place, &node) in self.soft.iter().enumerate() {
+                let alone = field.pressure[0][node] + time * field.pressure[1][node];
+                pressure[node] = alone + answers[(place, 0)];
+            }
+        }
+        let mut given_gaps = vec![0.0; nodes];
+        for &(node, [p, gap]) in ended {
+            (pressure[node], given_gaps[node]) = (p, gap);
+        }
+        let bare = || self.problem.initial_gap().iter().map(|gap| gap - front.approach);
+        let mut base: [Vec<f64>; 2] = [bare().collect(), vec![0.0; nodes]];
+        let zero = vec![0.0; nodes];
+        self.contact.order().iter().for_each(|&node| pressure[node] = 0.0);
+        self.add_displacement(&mut base, [&pressure, &zero])?;
+        if !self.contact.is_empty() {
+            base[0].iter_mut().zip(&given_gaps).for_each(|(base, gap)| *base -= gap);
+            let [solved, _] = self.solve([&base[0], &zero])?;
+            self.contact.order().iter().for_each(|&node| pressure[node] = solved[node]);
+            base[0].iter_mut().zip(&given_gaps).for_each(|(base, gap)| *base += gap);
+            self.add_displacement(&mut base, [&solved, &zero])?;
+        }
+        let [gap, _] = base;
+        Ok(Field { pressure: [pressure, zero.clone()], gap: [gap, zero] })
+    }
+
     /// Gives gaps that are known by their state the values that they have, after a check.
     fn settle(&self, front: &Front, field: &mut Field) -> Result<(), Error> {
         let slope = self.law.slope();
@@ -331,6 +540,7 @@ impl Body {
 
     /// Pressures of the soft nodes where these are all gaps without them and without those of the contact.
     fn soft_pressures(&mut self, base: &[Vec<f64>; 2]) -> Result<[Vec<f64>; 2], Error> {
+        self.factor_soft()?;
         let mut gaps =
             [0, 1].map(|k| self.soft.iter().map(|&node| base[k][node]).collect::<Vec<_>>());
         if !self.contact.is_empty() {
@@ -342,31 +552,9 @@ impl Body {
                 }
             }
         }
-        let matrix = match self.soft_matrix.take() {
-            Some(matrix) => matrix,
-            None => {
-                let mut schur = Schur::default();
-                self.updater.watch(&self.problem, &self.contact, &self.soft, &mut schur)?;
-                self.known.clone_from(&self.soft);
-                Mat::from_fn(schur.size(), schur.size(), |i, j| schur.entry(i, j))
-            }
-        };
-        // M, of which the factor takes the lower triangle.
-        let compliance = self.law.slope().recip();
-        let size = matrix.nrows();
-        let minus = Mat::from_fn(size, size, |i, j| {
-            if i == j { compliance - matrix[(i, j)] } else { -matrix[(i, j)] }
-        });
-        self.soft_matrix = Some(matrix);
-        let nodes = self.contact.len() + self.soft.len();
-        let factor = minus.llt(Side::Lower);
-        let factor = factor.map_err(|_| Error::FactorizationFailed { nodes })?;
-        let pivots = (0..size).map(|i| factor.L()[(i, i)].powi(2) / compliance);
-        self.least_pivot = pivots.fold(1.0, f64::min);
         let range = self.law.range();
-        let mut right = Mat::from_fn(size, 2, |i, k| gaps[k][i] - if k == 0 { range } else { 0.0 });
-        factor.solve_in_place(&mut right);
-        Ok([0, 1].map(|k| right.col(k).iter().copied().collect()))
+        gaps[0].iter_mut().for_each(|gap| *gap -= range);
+        Ok(self.factor_soft()?.solve(gaps))
     }
 
     /// What a unit of pressure at each node out of contact, or of gap at each in contact, makes of the sums of
@@ -383,35 +571,13 @@ impl Body {
         }
         Ok(solved)
     }
-
-    /// The matrix of some nodes out of contact, of which the soft ones come first, and of nodes at some positions of
-    /// the contact.
-    pub(super) fn watch(
-        &mut self,
-        nodes: &[usize],
-        positions: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        let watched = nodes.len() + positions.len();
-        let needed = self.updater.bytes(self.contact.len(), watched);
-        let needed = needed.saturating_add(WindowFactor::bytes(watched));
-        if needed > self.budget {
-            let budget = self.budget;
-            return Err(Error::MemoryBudget { needed, budget, nodes_that_fit: self.contact.len() });
-        }
-        self.updater.watch_both(&self.problem, &self.contact, nodes, positions, schur)?;
-        self.known.clear();
-        self.known.extend_from_slice(nodes);
-        Ok(())
-    }
 }
 
-impl Window {
-    /// The part of the matrix that is of some nodes, if all of them were watched.
-    fn matrix_of(&self, nodes: &[usize]) -> Option<Mat<f64>> {
-        let place = |node: &usize| self.nodes.iter().position(|other| other == node);
-        let places: Vec<usize> = nodes.iter().map(place).collect::<Option<_>>()?;
-        let size = places.len();
-        Some(Mat::from_fn(size, size, |i, j| self.schur.entry(places[i], places[j])))
+impl Watched {
+    /// The place of each node of a grid of so many.
+    fn places(&self, nodes: usize) -> Vec<Option<usize>> {
+        let mut places = vec![None; nodes];
+        self.nodes.iter().enumerate().for_each(|(place, &node)| places[node] = Some(place));
+        places
     }
 }

@@ -55,6 +55,7 @@
 //! forth here and jumps have another parameter, the pull of a node, so that windows keep the inverse of their matrix
 //! and not its factor. `docs/theory.md` has the derivation.
 
+mod answers;
 mod board;
 mod branch;
 mod builder;
@@ -63,6 +64,7 @@ mod law;
 mod moment;
 mod path;
 mod plain;
+mod soft;
 mod state;
 mod target;
 mod trace;

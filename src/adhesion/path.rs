@@ -22,8 +22,8 @@ use crate::{Error, Grid, Problem};
 
 /// Nodes that are watched beside those that are pulled: so many, or one for so many soft ones. On 128 × 128 nodes with
 /// up to 628 soft ones twice as many are as fast, and half as many take 1.2 times as long.
-const WATCHED: usize = 64;
-const SOFT_FOR_ONE: usize = 4;
+const WATCHED: usize = 128;
+const SOFT_FOR_ONE: usize = 2;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to 1e-12
 /// whatever the windows were, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
@@ -76,6 +76,8 @@ pub struct AdhesiveTimings {
     pub windows: usize,
     /// Windows that their end contradicted.
     pub taken_back: usize,
+    /// Windows that were played again with fewer events, before anything had followed.
+    pub shortened: usize,
     /// Events of all kinds, those within jumps included.
     pub events: usize,
 }
@@ -472,14 +474,14 @@ impl AdhesivePath {
         let automatic = WATCHED.max(self.body.soft().len() / SOFT_FOR_ONE);
         let size = self.window_size.unwrap_or(automatic);
         let found = window::follow(&mut self.body, &self.front, &field, &view, size)?;
-        let Some(Played { front, field, moments, changes, totals, jump, is_at_limit, taken_back }) =
-            found
-        else {
+        let Some(played) = found else {
             self.end = Some(AdhesiveEnd::NoMoreEvents);
             return Ok(());
         };
+        let Played { front, field, moments, changes, totals, jump, is_at_limit, .. } = played;
         self.timings.windows += 1;
-        self.timings.taken_back += taken_back;
+        self.timings.shortened += played.shortened;
+        self.timings.taken_back += played.taken_back;
         self.timings.events += changes.len();
         let before = self.trace.changes.len();
         self.trace.changes.extend(changes);

@@ -1,14 +1,15 @@
 //! The events of a window: along one parameter, among the nodes that are watched.
 
 use super::board::{Beginning, Board, Change, LAG, Left, Row};
-use super::front::{Body, Field, Front, Parameter};
+use super::law::CohesiveLaw;
+use super::front::{Body, Field, Front, Parameter, Rows};
 use super::moment::{Moment, Totals};
 use super::state::{AdhesiveEvent, Direction, NodeState};
 use super::target::{Measured, Targets};
-use crate::Error;
+use crate::contact::ContactState;
 use crate::error::AdhesionError;
 use crate::kernel::Gauge;
-use crate::updater::Schur;
+use crate::{Error, Grid};
 
 /// By how much a node may be beyond its law at the end of a window, in pressures relative to the stress, in gaps to the
 /// range: ten times the lag with which a node that is carried is put on its law, which others answer to. Of gaps there is
@@ -17,6 +18,8 @@ const SLACK: f64 = 10.0 * LAG;
 const ROUNDING: f64 = 1e-12;
 /// A window that its end contradicts is tried again so often, with fewer events and more nodes.
 const TRIES: usize = 60;
+/// Nodes that are watched beside all soft ones.
+const ALONE: usize = 64;
 
 /// What a window needs to know of its path.
 pub(super) struct View<'a> {
@@ -39,6 +42,7 @@ pub(super) struct Played {
     pub(super) jump: Option<usize>,
     pub(super) is_at_limit: bool,
     pub(super) taken_back: usize,
+    pub(super) shortened: usize,
 }
 
 /// Follows events until something may happen to a node that is not watched, until a jump begins or the pull of its next
@@ -52,15 +56,18 @@ pub(super) fn follow(
     size: usize,
 ) -> Result<Option<Played>, Error> {
     let mut also = Vec::new();
-    let mut most = usize::MAX;
+    let (mut most, mut watched) = (usize::MAX, size);
     for taken_back in 0..TRIES {
-        let Some(mut play) = Play::open(body, front, field, view, (size, &also))? else {
+        let mut play = Play::open(body, front, field, view, (watched, &also))?;
+        let Some(ended) = play.play_out(body, front, field, most.min(size))? else {
+            if play.lacks_others {
+                // What happens first takes all soft nodes.
+                watched = usize::MAX;
+                continue;
+            }
             return Ok(None);
         };
-        play.run(most.min(size));
-        let Some(ended) = play.end(front) else {
-            return Ok(None);
-        };
+        play.add_energies(body, field);
         body.follow(&ended)?;
         let found = body.survey(&ended, view.direction.sign());
         let wrong = match &found {
@@ -71,7 +78,7 @@ pub(super) fn follow(
         let field = match (wrong.is_empty(), found) {
             (true, found) => found?,
             (false, _) => {
-                body.follow(front)?;
+                body.go_back(front)?;
                 let (node, value) = wrong[0];
                 let is_new = wrong.iter().any(|(node, _)| !also.contains(node));
                 if play.events <= 1 && !is_new {
@@ -98,6 +105,7 @@ pub(super) fn follow(
             jump: play.jump,
             is_at_limit: play.is_at_limit,
             taken_back,
+            shortened: play.shortened,
         }));
     }
     Err(Error::Cycling { approach: front.approach, events: TRIES })
@@ -108,97 +116,102 @@ fn beyond(body: &Body, front: &Front, field: &Field) -> Vec<(usize, f64)> {
     let law = &body.law;
     let length = body.problem.greatest_gap() + front.approach.abs();
     let slack = SLACK + ROUNDING * length / (law.range() * body.least_pivot());
-    let nodes = front.nodes.iter().enumerate().filter_map(|(node, state)| {
-        let gap = field.gap[0][node] / law.range();
-        let flat = law.flat_range() / law.range();
-        let value = match state {
-            NodeState::Open => 1.0 - gap,
-            NodeState::Soft => (flat - gap).max(gap - 1.0),
-            NodeState::Cohesive => (-gap).max(gap - flat),
-            NodeState::Held => -gap,
-            NodeState::Contact => -1.0 - field.pressure[0][node] / law.stress(),
-        };
+    let nodes = front.nodes.iter().enumerate().filter_map(|(node, &state)| {
+        let value = excess(law, state, [field.pressure[0][node], field.gap[0][node]]);
         (value.is_nan() || value > slack).then_some((node, value))
     });
     nodes.collect()
 }
 
+/// How far pressure and gap of a node are beyond the law of its state, relative to stress and range; below 0 on the law.
+fn excess(law: &CohesiveLaw, state: NodeState, [pressure, gap]: [f64; 2]) -> f64 {
+    let (gap, flat) = (gap / law.range(), law.flat_range() / law.range());
+    match state {
+        NodeState::Open => 1.0 - gap,
+        NodeState::Soft => (flat - gap).max(gap - 1.0),
+        NodeState::Cohesive => (-gap).max(gap - flat),
+        NodeState::Held => -gap,
+        NodeState::Contact => -1.0 - pressure / law.stress(),
+    }
+}
+
 struct Play<'a> {
     view: &'a View<'a>,
     board: Board,
+    rows: Rows,
+    /// The rows as they began.
+    begun: Vec<Row>,
+    /// What it has begun along.
     parameter: Parameter,
-    area: f64,
-    nodes: f64,
+    grid: Grid,
     approach: f64,
     /// Until then nothing happens to a node that is not watched, as far as its rate at the beginning tells.
     horizon: f64,
+    /// The end of the window: no event but the first comes later.
+    end: f64,
+    /// Along the parameter that it has begun along.
     time: f64,
     events: usize,
     totals: Totals,
     moments: Vec<(AdhesiveEvent, usize, Moment, usize)>,
+    /// When each of them was, and what was given of the rows then beside what was at the beginning.
+    given: Vec<(f64, Vec<f64>)>,
     jump: Option<usize>,
     is_at_limit: bool,
     has_moved: bool,
+    /// Whether what happens next takes soft nodes that are not watched.
+    lacks_others: bool,
+    /// How often it was played again with fewer events.
+    shortened: usize,
 }
 
 impl<'a> Play<'a> {
-    /// Watches all nodes that are pulled, those of `also`, and of the others so many that something happens to first.
+    /// Watches all nodes that are pulled with σ₀ or held, those of `also`, and of the others so many that something
+    /// happens to first.
     fn open(
         body: &mut Body,
         front: &Front,
         field: &Field,
         view: &'a View<'a>,
         (size, also): (usize, &[usize]),
-    ) -> Result<Option<Self>, Error> {
+    ) -> Result<Self, Error> {
         let line =
             |node: usize| [&field.pressure, &field.gap].map(|pair| [pair[0][node], pair[1][node]]);
-        let mut others = Vec::new();
-        let mut watched: Vec<usize> = body.soft().to_vec();
+        let (mut nodes, mut others) = (Vec::new(), Vec::new());
         for (node, &state) in front.nodes.iter().enumerate() {
-            match state {
-                NodeState::Soft => {}
-                NodeState::Cohesive | NodeState::Held => watched.push(node),
-                NodeState::Open | NodeState::Contact => {
-                    let [[p, dp], [gap, dgap]] = line(node);
-                    let left = Left::of(&body.law, state, [p, gap], [dp, dgap]);
-                    if also.contains(&node) {
-                        others.push((f64::NEG_INFINITY, node));
-                    } else if let Some(left) = left {
-                        others.push((left.time(), node));
-                    }
-                }
+            if matches!(state, NodeState::Cohesive | NodeState::Held) {
+                nodes.push(node);
+                continue;
+            }
+            let [[p, dp], [gap, dgap]] = line(node);
+            let left = Left::of(&body.law, state, [p, gap], [dp, dgap]);
+            if also.contains(&node) || size == usize::MAX && state == NodeState::Soft {
+                others.push((f64::NEG_INFINITY, node));
+            } else if let Some(left) = left {
+                others.push((left.time(), node));
             }
         }
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let count = size + also.len();
+        let count = if size == usize::MAX {
+            others.iter().filter(|other| other.0 == f64::NEG_INFINITY).count() + ALONE
+        } else {
+            size.saturating_add(also.len())
+        };
         let mut horizon = f64::INFINITY;
         if count < others.len() {
             horizon = others.select_nth_unstable_by(count, order).1.0;
             others.truncate(count);
         }
-        let (inside, outside): (Vec<usize>, Vec<usize>) = others
+        nodes.extend(others.iter().map(|&(_, node)| node));
+        nodes.sort_unstable();
+        let (answers, rows) = body.rows(front, &nodes)?;
+        let begun: Vec<Row> = nodes
             .iter()
-            .map(|&(_, node)| node)
-            .partition(|&node| front.nodes[node] == NodeState::Contact);
-        // Those whose columns are known first, in their order.
-        let mut place = vec![usize::MAX; front.nodes.len()];
-        body.known().iter().enumerate().for_each(|(k, &node)| place[node] = k);
-        let soft = watched.partition_point(|&node| front.nodes[node] == NodeState::Soft);
-        watched.extend(outside);
-        watched[soft..].sort_by_key(|&node| place[node]);
-        let places = body.contact().places();
-        let mut positions: Vec<usize> = inside.iter().filter_map(|&node| places[node]).collect();
-        positions.sort_unstable();
-        let order = body.contact().order();
-        let nodes: Vec<usize> =
-            watched.iter().copied().chain(positions.iter().map(|&place| order[place])).collect();
-        let mut schur = Schur::default();
-        body.watch(&watched, &positions, &mut schur)?;
-        let [of_pressures, of_gaps] = body.sums_by_node()?;
-        let rows = nodes.iter().map(|&node| {
-            let [[pressure, _], [gap, _]] = line(node);
-            Row { node, state: front.nodes[node], pressure, gap }
-        });
+            .map(|&node| {
+                let [[pressure, _], [gap, _]] = line(node);
+                Row { node, state: front.nodes[node], pressure, gap }
+            })
+            .collect();
         let rates = nodes.iter().map(|&node| {
             let [[_, dp], [_, dgap]] = line(node);
             match front.nodes[node] {
@@ -207,37 +220,44 @@ impl<'a> Play<'a> {
             }
         });
         let parameter = front.parameter();
-        let sums = field.sums();
+        let soft = begun.iter().filter(|row| row.state == NodeState::Soft).count();
         let board = Board::new(Beginning {
             law: body.law,
             sign: view.direction.sign(),
-            rows: rows.collect(),
-            schur: &schur,
-            sums_by_row: nodes.iter().map(|&node| [of_pressures[node], of_gaps[node]]).collect(),
+            rows: begun.clone(),
+            answers,
             rates: rates.collect(),
-            sums,
+            sums: field.sums(),
             held: front.held.clone(),
             is_carried: parameter != Parameter::Approach,
             contact_nodes: front.count(NodeState::Contact),
+            other_soft: body.soft().len() - soft,
         });
-        body.keep(watched, schur);
-        let grid = body.problem.grid();
-        Ok(Some(Self {
+        Ok(Self {
             view,
             board,
+            rows,
+            begun,
             parameter,
-            area: grid.cell_area(),
-            nodes: grid.nodes() as f64,
+            grid: body.problem.grid(),
             approach: front.approach,
             horizon,
+            end: horizon,
             time: 0.0,
             events: 0,
             totals: view.totals,
             moments: Vec::new(),
+            given: Vec::new(),
             jump: None,
             is_at_limit: false,
             has_moved: false,
-        }))
+            lacks_others: false,
+            shortened: 0,
+        })
+    }
+
+    fn area(&self) -> f64 {
+        self.grid.cell_area()
     }
 
     fn moment(&self) -> Moment {
@@ -257,12 +277,124 @@ impl<'a> Play<'a> {
         self.moments.push((event, node, moment, changes));
     }
 
-    /// Plays so many events at most.
-    fn run(&mut self, most: usize) {
-        match self.parameter {
-            Parameter::Approach => while self.step(most) {},
-            Parameter::Pull(_) => while self.carry(most) {},
+    /// What is given of the rows beside what was at the beginning.
+    fn given(&self) -> Vec<f64> {
+        let slope = self.board.law().slope();
+        let rows = self.begun.iter().zip(&self.board.rows);
+        let given = rows.map(|(begun, now)| match begun.state {
+            NodeState::Soft => (now.gap - begun.gap) - (now.pressure - begun.pressure) / slope,
+            NodeState::Contact => now.gap,
+            _ => now.pressure - begun.pressure,
+        });
+        given.collect()
+    }
+
+    /// Notes that at the moment that comes next.
+    fn note(&mut self) {
+        self.given.push((self.time, self.given()));
+    }
+
+    /// Plays so many events at most, as far as nothing happens to other nodes before. Returns where that leads; `None` if
+    /// nothing has happened.
+    fn play_out(
+        &mut self,
+        body: &mut Body,
+        front: &Front,
+        field: &Field,
+        most: usize,
+    ) -> Result<Option<Front>, Error> {
+        let begun = self.board.clone();
+        let (mut most, mut until) = (most, f64::INFINITY);
+        loop {
+            self.run(most, until);
+            let Some(ended) = self.ended(front) else { return Ok(None) };
+            if self.events <= 1 {
+                return Ok(Some(ended));
+            }
+            // What the carried row is given has its part in the rates along its pull.
+            let alone = if self.parameter == Parameter::Approach { self.time } else { 0.0 };
+            let rows = self.board.rows.iter().map(|row| (row.node, [row.pressure, row.gap]));
+            let rows: Vec<_> = rows.collect();
+            let found =
+                body.preview(&ended, (field, alone), &self.rows, (&rows, self.given()))?;
+            let wrong = beyond(body, &ended, &found);
+            if wrong.is_empty() {
+                return Ok(Some(ended));
+            }
+            // Gaps fall faster and faster on loading: a line comes too early.
+            let crossings = wrong.iter().map(|&(node, after)| {
+                let line = [field.pressure[0][node], field.gap[0][node]];
+                let before = excess(&body.law, front.nodes[node], line).min(0.0);
+                self.time * before / (before - after)
+            });
+            let first = crossings.fold(f64::INFINITY, f64::min);
+            // The second time that is not good enough.
+            most = if until.is_finite() { self.events / 2 } else { self.events - 1 };
+            until = until.min(first);
+            self.restart(&begun, front);
         }
+    }
+
+    /// Back to where it has begun.
+    fn restart(&mut self, begun: &Board, front: &Front) {
+        self.board = begun.clone();
+        self.approach = front.approach;
+        self.totals = self.view.totals;
+        self.moments.clear();
+        self.given.clear();
+        (self.time, self.events, self.jump) = (0.0, 0, None);
+        (self.is_at_limit, self.has_moved, self.lacks_others) = (false, false, false);
+        self.shortened += 1;
+    }
+
+    /// Adds the energies of soft nodes that were not watched.
+    fn add_energies(&mut self, body: &Body, field: &Field) {
+        let is_row = |node: usize| self.begun.binary_search_by_key(&node, |row| row.node).is_ok();
+        let squares = body.squares(&self.rows, is_row, field, &self.given);
+        let slope = self.board.law().slope();
+        for ((.., moment, _), squares) in self.moments.iter_mut().zip(squares) {
+            moment.energy -= 0.5 * squares / slope;
+        }
+    }
+
+    /// Plays so many events at most, but for the first one until a time.
+    fn run(&mut self, most: usize, until: f64) {
+        self.end = self.horizon.min(until);
+        loop {
+            let goes_on = if self.board.carries() { self.carry(most) } else { self.step(most) };
+            if !goes_on || !self.turn(most) {
+                return;
+            }
+        }
+    }
+
+    /// From the approach to the pull of a node that is held, or on to the next one, or back; false once the window ends.
+    fn turn(&mut self, most: usize) -> bool {
+        if self.board.carries() {
+            return true;
+        }
+        if !self.board.held.is_empty() {
+            if self.events >= most {
+                return false;
+            }
+            self.board.carry_next();
+            return true;
+        }
+        if self.parameter != Parameter::Approach {
+            // Rates along the approach are not known.
+            return false;
+        }
+        self.board.end_carrying();
+        let Some(node) = self.jump.take() else { return true };
+        let moment = self.moment();
+        self.note();
+        self.push(AdhesiveEvent::JumpEnd, node, moment, self.board.changes.len());
+        let [[pressures, _], [gaps, _]] = moment.sums;
+        let load = self.area() * pressures;
+        let approach = self.view.gauge.reported_approach(self.approach, load);
+        let mean_gap = gaps / self.grid.nodes() as f64;
+        let state = ContactState::new(&self.grid, moment.contact_nodes, approach, load, mean_gap);
+        !self.view.targets.is_past(&state, self.view.direction)
     }
 
     /// One event along the approach; false once the window ends.
@@ -272,14 +404,14 @@ impl<'a> Play<'a> {
         let [[pressures, pressure_rate], [gaps, gap_rate]] = self.moment().sums;
         let measured = Measured {
             approach: self.approach,
-            load: [pressures, pressure_rate].map(|sum| self.area * sum),
-            mean_gap: [gaps, gap_rate].map(|sum| sum / self.nodes),
-            stiffness: self.area * self.board.law().slope(),
+            load: [pressures, pressure_rate].map(|sum| self.area() * sum),
+            mean_gap: [gaps, gap_rate].map(|sum| sum / self.grid.nodes() as f64),
+            stiffness: self.area() * self.board.law().slope(),
         };
         let limit = self.view.targets.time(self.view.gauge, &measured, self.view.direction);
         let first = until.min(limit);
         if first == f64::INFINITY
-            || self.events > 0 && (self.time + first > self.horizon || self.events >= most)
+            || self.events > 0 && (self.time + first > self.end || self.events >= most)
         {
             return false;
         }
@@ -296,19 +428,25 @@ impl<'a> Play<'a> {
             Some((_, place)) if until <= limit && !is_full(place) => place,
             _ => {
                 let node = self.board.changes.last().map_or(self.view.last_node, |last| last.node);
+                self.note();
                 self.push(AdhesiveEvent::Limit, node, self.moment(), self.board.changes.len());
                 self.is_at_limit = true;
                 return false;
             }
         };
+        if self.board.lacks_others(place) {
+            self.lacks_others = true;
+            return false;
+        }
         let (before, changes) = (self.moment(), self.board.changes.len());
         let Row { node, state: from, .. } = self.board.rows[place];
+        self.note();
         self.board.happen(place);
         self.events += 1;
         if !self.board.held.is_empty() {
             self.push(AdhesiveEvent::JumpStart, node, before, changes);
             self.jump = Some(node);
-            return false;
+            return !self.board.is_worn;
         }
         let event = match (from, self.board.rows[place].state) {
             (NodeState::Open, _) => AdhesiveEvent::Near,
@@ -326,24 +464,25 @@ impl<'a> Play<'a> {
 
     /// One event along the pull of a node; false once the window ends.
     fn carry(&mut self, most: usize) -> bool {
-        if !self.board.carries() {
-            return false;
-        }
         let Some(carry) = self.board.carry() else {
             self.events += 1;
-            return false;
+            return !self.board.is_worn;
         };
         let next = self.board.next();
         let event = next.map_or(f64::INFINITY, |(time, _)| time);
         let step = event.min(carry.corner).min(carry.law).min(carry.end);
-        if step == f64::INFINITY
-            || self.events > 0 && (self.time + step > self.horizon || self.events >= most)
-        {
+        let is_beyond =
+            self.parameter != Parameter::Approach && self.time + step > self.end;
+        if step == f64::INFINITY || self.events > 0 && (is_beyond || self.events >= most) {
             return false;
         }
         self.advance(step);
         match next {
             Some((time, place)) if time <= step => {
+                if self.board.lacks_others(place) {
+                    self.lacks_others = true;
+                    return false;
+                }
                 self.board.happen(place);
                 self.events += 1;
             }
@@ -353,7 +492,6 @@ impl<'a> Play<'a> {
             {
                 self.board.let_go();
                 self.events += 1;
-                return false;
             }
             _ => {}
         }
@@ -364,20 +502,22 @@ impl<'a> Play<'a> {
         let [before, _] = self.board.sums;
         let lost = self.board.advance(step);
         let [after, _] = self.board.sums;
-        self.time += step;
         self.has_moved |= step > 0.0;
-        match self.parameter {
-            Parameter::Approach => {
-                let step = self.view.direction.sign() * step;
-                self.approach += step;
-                self.totals.work += 0.5 * self.area * (before + after) * step;
-            }
-            Parameter::Pull(_) => self.totals.dissipated += self.area * lost,
+        let carries = self.board.carries();
+        if carries != (self.parameter == Parameter::Approach) {
+            self.time += step;
+        }
+        if carries {
+            self.totals.dissipated += self.area() * lost;
+        } else {
+            let step = self.view.direction.sign() * step;
+            self.approach += step;
+            self.totals.work += 0.5 * self.area() * (before + after) * step;
         }
     }
 
     /// Where it has led; `None` if nothing has happened.
-    fn end(&self, start: &Front) -> Option<Front> {
+    fn ended(&self, start: &Front) -> Option<Front> {
         if self.events == 0 && !self.has_moved && !self.is_at_limit {
             return None;
         }

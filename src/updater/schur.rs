@@ -83,6 +83,30 @@ impl Schur {
         Self { size, matrix, row_sums: vec![0.0; size] }
     }
 
+    /// Column `j` of S from its diagonal on.
+    pub(crate) fn below(&self, j: usize) -> &[f64] {
+        &self.matrix[j + self.size * j..self.size * (j + 1)]
+    }
+
+    /// The part of some of the watched nodes, ascending, with room behind it for more, up to `size`.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::resize`].
+    pub(crate) fn part(&self, places: &[usize], size: usize) -> Result<Self, Error> {
+        let mut part = Self::default();
+        part.resize(size.max(places.len()))?;
+        for (j, (&column, target)) in
+            places.iter().zip(part.matrix.chunks_exact_mut(part.size.max(1))).enumerate()
+        {
+            let values = self.below(column);
+            for (value, &row) in target[j..].iter_mut().zip(&places[j..]) {
+                *value = values[row - column];
+            }
+        }
+        Ok(part)
+    }
+
     /// The columns of S as stored.
     pub(crate) fn as_mut_slice(&mut self) -> &mut [f64] {
         &mut self.matrix

@@ -1,5 +1,8 @@
 //! The nodes of the window that touched, and the Cholesky factor of their Schur complement.
 
+use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
+use faer::{Mat, Par};
+
 use super::Schur;
 use super::tuning::BLOCK;
 use crate::Error;
@@ -201,6 +204,45 @@ impl WindowFactor {
             }
             *here = here.map(|value| value / column[self.positions[t]]);
         }
+    }
+
+    /// The matrix of the nodes at `stay` (ascending) and, behind them, of those of the events, all of which left a
+    /// contact: from the Schur complement S once all events have been subtracted. With R of those that stay and R₁ of those
+    /// that left, their pressures given and no longer their gaps,
+    ///
+    /// ```text
+    /// S    R R₁⁻¹
+    ///      R₁⁻ᵀ R₁⁻¹
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As for [`Schur::resize`].
+    pub(crate) fn opened(&self, schur: &Schur, stay: &[usize]) -> Result<Schur, Error> {
+        let (count, events, size) = (stay.len(), self.len(), stay.len() + self.len());
+        let mut opened = schur.part(stay, size)?;
+        let own = Mat::from_fn(events, events, |i, t| {
+            if t <= i { self.column(t)[self.positions[i]] } else { 0.0 }
+        });
+        // Row by row (R R₁⁻¹)ᵀ, and R₁⁻ᵀ behind it.
+        let mut solved = Mat::from_fn(events, size, |t, i| match stay.get(i) {
+            Some(&place) => self.column(t)[place],
+            None => f64::from(u8::from(i - count == t)),
+        });
+        solve_upper_triangular_in_place(own.transpose(), solved.as_mut(), Par::Seq);
+        let inverse = solved.subcols(count, events);
+        // Column i is row i of R₁⁻¹.
+        let corner = inverse * inverse.transpose();
+        let mut matrix = opened.matrix_mut();
+        for t in 0..events {
+            for i in 0..count {
+                matrix[(count + t, i)] = solved[(t, i)];
+            }
+            for i in t..events {
+                matrix[(count + i, count + t)] = corner[(i, t)];
+            }
+        }
+        Ok(opened)
     }
 
     /// Subtracts the events from the whole Schur complement, from which they have been subtracted in part. No event can

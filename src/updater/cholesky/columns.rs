@@ -9,11 +9,11 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::operations;
-use super::panels::Panels;
+use super::panels::{Panels, Rotation, rotate};
 use super::products::subtract_transposed;
-use crate::parallel;
+use crate::parallel::{self, vectorized};
 use crate::updater::WindowFactor;
-use crate::updater::tuning::{CACHED_ROWS, ROWS, UNIT, WIDTH};
+use crate::updater::tuning::{CACHED_ROWS, LANES, ROWS, UNIT, WIDTH};
 
 /// The forward-substituted columns `F = L⁻¹C_IP` of the watched nodes P, which grow with the
 /// factor L.
@@ -181,19 +181,20 @@ impl Columns {
         }
     }
 
-    /// S −= Fᵀ F (lower triangle, column by column).
-    pub(super) fn subtract_gram(&self, mut matrix: &mut [f64]) {
+    /// S −= Fᵀ F (lower triangle, column by column), but for the first `known` columns (all of those that were watched
+    /// before, or none) among themselves.
+    pub(super) fn subtract_gram(&self, known: usize, mut matrix: &mut [f64]) {
         let tiles = self.tiles();
         let size = tiles.last().map_or(0, |(start, _, columns)| start + columns.len());
+        let new = tiles.partition_point(|(start, ..)| *start < known);
         let mut tasks = Vec::with_capacity(tiles.len());
         for first in 0..tiles.len() {
             let (s, rest) = matrix.split_at_mut(tiles[first].2.len() * size);
             matrix = rest;
-            tasks.push((&tiles[first..], s));
+            tasks.push((&tiles[first], &tiles[first.max(new)..], s));
         }
-        let work = operations::gram(self.rows, size);
-        parallel::for_each(work, &mut tasks, |(tiles, s)| {
-            let (_, block, columns) = &tiles[0];
+        let work = operations::gram(self.rows, size) - operations::gram(self.rows, known.min(size));
+        parallel::for_each(work, &mut tasks, |((_, block, columns), tiles, s)| {
             let here = block.view(self.rows, columns.clone());
             for (start, block, rows) in *tiles {
                 let below = block.view(self.rows, rows.clone()).transpose();
@@ -348,11 +349,91 @@ impl Columns {
         }
     }
 
+    /// Lets the columns at `kept` follow a factor that loses rows at `positions` (both ascending), and appends those of
+    /// the nodes that leave: their rows of L, zero behind the diagonal. Of the remaining rows behind the first that goes
+    /// each has its rotations, as [`remove_and`](super::panels::remove_and) makes them.
+    ///
+    /// With `C_IP = L F` and the remaining rows `L Q = (L', 0)` the columns are the first rows of `Qᵀ F`.
+    pub(super) fn leave(
+        &mut self,
+        kept: &[usize],
+        positions: &[usize],
+        leaving: &[Vec<f64>],
+        rotations: &[Vec<Rotation>],
+    ) {
+        let (rows, first) = (self.rows, positions.first().copied().unwrap_or(self.rows));
+        let located: Vec<_> = kept.iter().filter_map(|&position| self.locate(position)).collect();
+        let sources: Vec<Source<'_>> = located
+            .into_iter()
+            .map(|(block, column)| Source::Column(block, column))
+            .chain(leaving.iter().map(|row| Source::Row(row)))
+            .collect();
+        let mut blocks: Vec<(&[Source<'_>], Block)> = sources
+            .chunks(WIDTH.next_multiple_of(LANES))
+            .map(|sources| (sources, Block::default()))
+            .collect();
+        let work = operations::rotations(sources.len(), rows - first, positions.len() / 2 + 1);
+        parallel::for_each(work, &mut blocks, |(sources, block)| {
+            let width = sources.len();
+            let padded = width.next_multiple_of(LANES);
+            let mut gone: Vec<f64> = Vec::with_capacity(positions.len() * padded);
+            let mut line = vec![0.0; padded];
+            block.width = width;
+            block.values.reserve_exact((rows - positions.len()) * width);
+            let mut rotations = rotations.iter();
+            let mut next = positions.iter().peekable();
+            for row in 0..rows {
+                for (value, source) in line.iter_mut().zip(*sources) {
+                    *value = match source {
+                        Source::Column(block, column) => block.values[row * block.width + column],
+                        Source::Row(values) => values.get(row).copied().unwrap_or_default(),
+                    };
+                }
+                if next.next_if_eq(&&row).is_some() {
+                    gone.extend_from_slice(&line);
+                    continue;
+                }
+                if row > first
+                    && let Some(rotations) = rotations.next()
+                {
+                    rotate_line(rotations, &mut line, &mut gone);
+                }
+                block.values.extend_from_slice(&line[..width]);
+            }
+        });
+        self.blocks = blocks.into_iter().map(|(_, block)| block).collect();
+        self.spare.clear();
+        self.rows = rows - positions.len();
+    }
+
     /// Forgets all columns, of a factor that has `rows` rows now.
     pub(super) fn forget(&mut self, rows: usize) {
         self.rows = rows;
         self.blocks.clear();
     }
+}
+
+/// Where a column comes from.
+enum Source<'a> {
+    Column(&'a Block, usize),
+    /// A row of the factor.
+    Row(&'a [f64]),
+}
+
+/// Rotates a row with each of those that are gone, one after the other.
+fn rotate_line(rotations: &[Rotation], line: &mut [f64], gone: &mut [f64]) {
+    let padded = line.len();
+    vectorized(
+        #[inline(always)]
+        || {
+            for (rotation, gone) in rotations.iter().zip(gone.chunks_exact_mut(padded)) {
+                let line = line.as_chunks_mut::<LANES>().0;
+                for (l, x) in line.iter_mut().zip(gone.as_chunks_mut::<LANES>().0) {
+                    rotate(*rotation, l, x);
+                }
+            }
+        },
+    );
 }
 
 /// Rows of F on their way into rows of L, and into the columns that are kept.

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use super::columns::Columns;
-use super::panels::{Panels, remove};
+use super::panels::{Panels, remove, remove_and};
 use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
-use crate::updater::{Schur, WindowFactor, check_count};
+use crate::updater::{Left, Schur, WindowFactor, check_count};
 use crate::{Error, Problem};
 
 /// Where a Cholesky updater spent its time.
@@ -57,8 +57,8 @@ impl Factor {
         self.panels.rows()
     }
 
-    /// Makes `nodes` and those at `places` of the contact the watched ones, and writes their Schur complement to
-    /// `schur`.
+    /// Makes some nodes the watched ones, each with its position if it is in contact, and writes their Schur complement
+    /// to `schur`, which may have that of the first `known` of them already.
     ///
     /// Nodes that were watched before are recognised if they come first and in the same order; only
     /// the others cost a forward substitution.
@@ -66,52 +66,60 @@ impl Factor {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        nodes: &[usize],
-        positions: &[usize],
+        watched: &[(usize, Option<usize>)],
+        known: usize,
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        problem.check_nodes(nodes)?;
+        let nodes: Vec<usize> = watched.iter().map(|&(node, _)| node).collect();
+        problem.check_nodes(&nodes)?;
         problem.check_nodes(contact.order())?;
         check_count(self.len(), contact.len())?;
-        for &position in positions {
+        let units: Vec<(usize, usize)> = watched
+            .iter()
+            .enumerate()
+            .filter_map(|(column, &(_, position))| Some((column, position?)))
+            .collect();
+        for &(_, position) in &units {
             check_position(position, contact.len())?;
         }
         let start = Stopwatch::start();
-        let out = nodes.len();
-        let nodes: Vec<usize> =
-            nodes.iter().copied().chain(positions.iter().map(|&p| contact.order()[p])).collect();
         let kept = self.watch(&nodes);
         let table = problem.table();
         let places_of = |nodes: &[usize]| -> Vec<usize> {
             nodes.iter().map(|&node| table.place(node)).collect()
         };
-        let (places, contact) = (places_of(&nodes[..out]), places_of(contact.order()));
+        let (places, contact) = (places_of(&nodes), places_of(contact.order()));
+        // Of a column from one of its numbers on: those of nodes in contact are unit vectors.
+        let units_from = |first: usize, count: usize| {
+            let from = units.partition_point(|&(column, _)| column < first);
+            let to = units.partition_point(|&(column, _)| column < first + count);
+            units[from..to].iter().map(move |&(column, position)| (column - first, position))
+        };
         self.columns.forward_substitute(&self.panels, kept, |row, first, values| {
-            let outside = values.len().min(out.saturating_sub(first));
-            let (coefficients, units) = values.split_at_mut(outside);
-            if outside > 0 {
-                table.fill_column(contact[row], &places[first..first + outside], coefficients);
-            }
-            for (value, position) in
-                units.iter_mut().zip(&positions[(first + outside).saturating_sub(out)..])
-            {
-                *value = f64::from(u8::from(*position == row));
+            table.fill_column(contact[row], &places[first..first + values.len()], values);
+            for (column, position) in units_from(first, values.len()) {
+                values[column] = f64::from(u8::from(position == row));
             }
         });
         self.timings.forward += start.elapsed();
 
         let start = Stopwatch::start();
-
+        let known = if known == kept && schur.size() == nodes.len() { known } else { 0 };
         schur.resize(nodes.len())?;
         let matrix = schur.as_mut_slice();
         for (j, column) in matrix.chunks_mut(nodes.len().max(1)).enumerate() {
-            let (outside, inside) = column[j..].split_at_mut(out.saturating_sub(j));
-            if let Some(&place) = places.get(j) {
-                table.fill_column(place, &places[j..], outside);
+            let from = j.max(known);
+            let values = &mut column[from..];
+            if watched[j].1.is_some() {
+                values.fill(0.0);
+            } else {
+                table.fill_column(places[j], &places[from..], values);
+                for (row, _) in units_from(from, values.len()) {
+                    values[row] = 0.0;
+                }
             }
-            inside.fill(0.0);
         }
-        self.columns.subtract_gram(matrix);
+        self.columns.subtract_gram(known, matrix);
         self.timings.schur += start.elapsed();
         Ok(())
     }
@@ -167,6 +175,39 @@ impl Factor {
         contact: &ContactSequence,
         positions: &[usize],
     ) -> Result<(), Error> {
+        self.check_release(contact, positions)?;
+        let start = Stopwatch::start();
+        self.watched.clear();
+        remove(&mut self.panels, positions);
+        self.columns.forget(self.panels.rows());
+        self.timings.release += start.elapsed();
+        Ok(())
+    }
+
+    /// The same, but the watched nodes stay watched, and those that left are too, behind the others.
+    pub(super) fn release_watched(
+        &mut self,
+        contact: &ContactSequence,
+        left: &[Left],
+    ) -> Result<(), Error> {
+        let positions: Vec<usize> = left.iter().map(|left| left.position).collect();
+        self.check_release(contact, &positions)?;
+        let start = Stopwatch::start();
+        let has_left = |node: &usize| left.iter().any(|left| left.node == *node);
+        let kept: Vec<usize> =
+            (0..self.watched.len()).filter(|&place| !has_left(&self.watched[place])).collect();
+        let rows: Vec<Vec<f64>> =
+            positions.iter().map(|&position| self.panels.row(position).to_vec()).collect();
+        let mut rotations = Vec::new();
+        remove_and(&mut self.panels, &positions, |column| rotations.push(column));
+        self.columns.leave(&kept, &positions, &rows, &rotations);
+        let others = kept.iter().map(|&place| self.watched[place]);
+        self.watched = others.chain(left.iter().map(|left| left.node)).collect();
+        self.timings.release += start.elapsed();
+        Ok(())
+    }
+
+    fn check_release(&self, contact: &ContactSequence, positions: &[usize]) -> Result<(), Error> {
         check_count(self.len(), contact.len() + positions.len())?;
         for (k, &position) in positions.iter().enumerate() {
             check_position(position, self.len())?;
@@ -174,11 +215,6 @@ impl Factor {
                 check_position(positions[k - 1], position)?;
             }
         }
-        let start = Stopwatch::start();
-        self.watched.clear();
-        remove(&mut self.panels, positions);
-        self.columns.forget(self.panels.rows());
-        self.timings.release += start.elapsed();
         Ok(())
     }
 

@@ -70,6 +70,46 @@ impl RecursiveCholesky {
         &self.border
     }
 
+    /// The same as [`watch_both`](LinearUpdater::watch_both), where nodes in contact have their positions and come in any
+    /// order, and `schur` has the matrix of the first `known` of them, those that were watched before.
+    pub(crate) fn watch_beside(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        watched: &[(usize, Option<usize>)],
+        known: usize,
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        self.factor.eliminate(problem, contact, watched, known, schur)?;
+        // Row sums are not asked for.
+        self.reduced.clear();
+        self.reduced.extend(watched.iter().map(|&(node, position)| {
+            position.map_or_else(|| problem.rhs(node), |_| [0.0; Problem::RHS])
+        }));
+        self.factor.columns.subtract_products(&self.border, &mut self.reduced);
+        Ok(())
+    }
+
+    /// Forgets nodes that left the contact as [`release`](LinearUpdater::release) does, but the watched nodes stay
+    /// watched, and those that left are too, behind the others.
+    pub(crate) fn release_watched(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        left: &[Left],
+    ) -> Result<(), Error> {
+        problem.check_nodes(contact.order())?;
+        self.factor.release_watched(contact, left)?;
+        self.renew_border(problem, contact);
+        Ok(())
+    }
+
+    fn renew_border(&mut self, problem: &Problem, contact: &ContactSequence) {
+        self.border.clear();
+        self.border.extend(contact.order().iter().map(|&node| problem.rhs(node)));
+        Columns::solve(&self.factor.panels, &mut self.border);
+    }
+
     /// Where the time went so far.
     #[doc(hidden)]
     #[must_use]
@@ -88,7 +128,8 @@ impl LinearUpdater for RecursiveCholesky {
         nodes: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        self.factor.eliminate(problem, contact, nodes, &[], schur)?;
+        let watched: Vec<_> = nodes.iter().map(|&node| (node, None)).collect();
+        self.factor.eliminate(problem, contact, &watched, 0, schur)?;
         let start = Stopwatch::start();
         self.reduced.clear();
         self.reduced.extend(nodes.iter().map(|&node| problem.rhs(node)));
@@ -156,9 +197,7 @@ impl LinearUpdater for RecursiveCholesky {
         problem.check_nodes(contact.order())?;
         let positions: Vec<usize> = left.iter().map(|left| left.position).collect();
         self.factor.release(contact, &positions)?;
-        self.border.clear();
-        self.border.extend(contact.order().iter().map(|&node| problem.rhs(node)));
-        Columns::solve(&self.factor.panels, &mut self.border);
+        self.renew_border(problem, contact);
         Ok(())
     }
 
@@ -170,13 +209,12 @@ impl LinearUpdater for RecursiveCholesky {
         positions: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        self.factor.eliminate(problem, contact, nodes, positions, schur)?;
-        // Row sums are not asked for.
-        self.reduced.clear();
-        self.reduced.extend(nodes.iter().map(|&node| problem.rhs(node)));
-        self.reduced.extend(positions.iter().map(|_| [0.0; Problem::RHS]));
-        self.factor.columns.subtract_products(&self.border, &mut self.reduced);
-        Ok(())
+        let outside = nodes.iter().map(|&node| (node, None));
+        let inside = positions.iter().map(|&position| {
+            (contact.order().get(position).copied().unwrap_or(usize::MAX), Some(position))
+        });
+        let watched: Vec<_> = outside.chain(inside).collect();
+        self.watch_beside(problem, contact, &watched, 0, schur)
     }
 
     fn solve_for(

@@ -6,7 +6,7 @@ use faer::MatRef;
 
 use crate::updater::tuning::ROWS;
 
-pub(super) use removal::remove;
+pub(super) use removal::{Rotation, remove, remove_and, rotate};
 
 /// A lower-triangular matrix L that grows by rows.
 ///
@@ -55,6 +55,12 @@ impl Panels {
         let panels = self.panels.iter_mut().enumerate().skip(first / ROWS);
         let rows = panels.flat_map(|(p, panel)| panel.chunks_mut((p + 1) * ROWS));
         rows.skip(first % ROWS).take(self.rows - first)
+    }
+
+    /// Row r, up to its diagonal.
+    pub(super) fn row(&self, r: usize) -> &[f64] {
+        let (p, width) = (r / ROWS, (r / ROWS + 1) * ROWS);
+        &self.panels[p][r % ROWS * width..][..=r]
     }
 
     /// Row r, up to the end of the diagonal block.

@@ -145,7 +145,7 @@ fn columns_are_solved_for_and_kept() {
 fn check_products(columns: &Columns, numbers: &[usize]) {
     let size = numbers.len();
     let mut gram = vec![1.0; size * size];
-    columns.subtract_gram(&mut gram);
+    columns.subtract_gram(0, &mut gram);
     let x: Vec<[f64; 2]> = (0..ROWS_HERE).map(|r| [(r % 5) as f64, 1.0]).collect();
     let mut reduced = vec![[2.0, 3.0]; size];
     columns.subtract_products(&x, &mut reduced);

@@ -6,11 +6,15 @@ use crate::updater::cholesky::operations;
 use crate::updater::tuning::{ROTATED, ROTATED_COLUMNS};
 
 /// (c, s) of a plane rotation.
-type Rotation = (f64, f64);
+pub(in crate::updater::cholesky) type Rotation = (f64, f64);
 
 /// (l, x) ← (c l + s x, c x − s l), for several at a time.
 #[inline(always)]
-fn rotate<const N: usize>((c, s): Rotation, l: &mut [f64; N], x: &mut [f64; N]) {
+pub(in crate::updater::cholesky) fn rotate<const N: usize>(
+    (c, s): Rotation,
+    l: &mut [f64; N],
+    x: &mut [f64; N],
+) {
     for (l, x) in l.iter_mut().zip(x) {
         let (before_l, before_x) = (*l, *x);
         *l = c * before_l + s * before_x;
@@ -25,6 +29,16 @@ fn rotate<const N: usize>((c, s): Rotation, l: &mut [f64; N], x: &mut [f64; N]) 
 /// Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as accurate as the old one.
 /// Some 3 m (n − k)² flops for m rows from the one at k on; the factor passes the cache once.
 pub(in crate::updater::cholesky) fn remove(panels: &mut Panels, positions: &[usize]) {
+    remove_and(panels, positions, |_| {});
+}
+
+/// The same, with what else is to be done with the rotations of each remaining column behind the first that goes, one
+/// with each removed column before it.
+pub(in crate::updater::cholesky) fn remove_and(
+    panels: &mut Panels,
+    positions: &[usize],
+    mut each: impl FnMut(Vec<Rotation>),
+) {
     let Some(&first) = positions.first() else {
         return;
     };
@@ -42,6 +56,7 @@ pub(in crate::updater::cholesky) fn remove(panels: &mut Panels, positions: &[usi
         }
         let work = operations::rotations(below.len() * ROTATED, columns.len(), positions.len());
         parallel::for_each(work, below, |block| block.rotate(&rotations, columns));
+        rotations.into_iter().for_each(&mut each);
     }
     let mut values = Vec::with_capacity(rows);
     for (to, &from) in (first..).zip(&kept) {

@@ -1,0 +1,201 @@
+//! How nodes answer to what is given of them, pivot by pivot.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+
+use crate::parallel::{self, vectorized};
+
+/// Pivots that are subtracted from the whole matrix at a time.
+const BLOCK: usize = 32;
+/// Columns that a thread changes at a time, and rows from which waking one pays.
+const TILE: usize = 144;
+const PARALLEL: usize = 400;
+
+/// The matrix T of how each of some nodes answers to what is given of the others, with two more rows, of sums.
+///
+/// Of every node one of two quantities is given and the other answers. [Exchanging](Self::pivot) both is a pivot: `T_ij`,
+/// `i, j ≠ s`, loses `T_is T_sj / T_ss`, which is a column times a row. These are kept, and subtracted from all of the
+/// matrix a block at a time. Rows follow from columns: T is symmetric but for a sign where one of the two answers with its
+/// pressure and the other does not.
+#[derive(Debug, Clone)]
+pub(super) struct Answers {
+    size: usize,
+    /// Column by column, of `size + 2` numbers each.
+    matrix: Vec<f64>,
+    /// Whether the pressure answers.
+    with_pressure: Vec<bool>,
+    /// The columns and rows of pivots that are still to be subtracted.
+    columns: Vec<f64>,
+    rows: Vec<f64>,
+}
+
+impl Answers {
+    /// From the columns of `size + 2` numbers, and whether the pressures answer.
+    pub(super) fn new(matrix: Vec<f64>, with_pressure: Vec<bool>) -> Self {
+        let size = with_pressure.len();
+        Self { size, matrix, with_pressure, columns: Vec::new(), rows: Vec::new() }
+    }
+
+    fn height(&self) -> usize {
+        self.size + 2
+    }
+
+    /// Pivots that are still to be subtracted: column and row of each.
+    fn pivots(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        let columns = self.columns.chunks_exact(self.height());
+        columns.zip(self.rows.chunks_exact(self.size.max(1)))
+    }
+
+    /// How one node answers to another.
+    pub(super) fn entry(&self, row: usize, column: usize) -> f64 {
+        let products: f64 = self.pivots().map(|(c, r)| c[row] * r[column]).sum();
+        self.matrix[row + self.height() * column] - products
+    }
+
+    /// How all answer to one of them.
+    pub(super) fn column(&self, column: usize) -> Vec<f64> {
+        let height = self.height();
+        let mut values = self.matrix[height * column..height * (column + 1)].to_vec();
+        vectorized(
+            #[inline(always)]
+            || {
+                for (c, r) in self.pivots() {
+                    let factor = r[column];
+                    if factor != 0.0 {
+                        values.iter_mut().zip(c).for_each(|(value, c)| *value -= factor * c);
+                    }
+                }
+            },
+        );
+        values
+    }
+
+    /// Adds to how a node answers to itself.
+    pub(super) fn shift(&mut self, place: usize, by: f64) {
+        let height = self.height();
+        self.matrix[place + height * place] += by;
+    }
+
+    /// Exchanges what is given of a node and what answers, in the matrix and in some more columns.
+    pub(super) fn pivot<'a>(
+        &mut self,
+        place: usize,
+        others: impl IntoIterator<Item = &'a mut Vec<f64>>,
+    ) {
+        let (size, height) = (self.size, self.height());
+        let mut column = self.column(place);
+        let own = self.with_pressure[place];
+        let mut row: Vec<f64> = column[..size]
+            .iter()
+            .zip(&self.with_pressure)
+            .map(|(value, answers)| if *answers == own { *value } else { -value })
+            .collect();
+        let inverse = column[place].recip();
+        column.iter_mut().for_each(|value| *value *= inverse);
+        (column[place], row[place]) = (inverse, -1.0);
+        for other in others {
+            let factor = other[place];
+            other[place] = 0.0;
+            other.iter_mut().zip(&column).for_each(|(value, c)| *value -= factor * c);
+        }
+        // What was there of its row and its column is in the new ones.
+        self.matrix[height * place..height * (place + 1)].fill(0.0);
+        self.matrix[place..].iter_mut().step_by(height).take(size).for_each(|value| *value = 0.0);
+        for (values, count) in [(&mut self.columns, height), (&mut self.rows, size)] {
+            values.chunks_exact_mut(count).for_each(|values| values[place] = 0.0);
+        }
+        self.columns.append(&mut column);
+        self.rows.append(&mut row);
+        self.with_pressure[place] = !own;
+        if self.rows.len() == BLOCK * size {
+            self.subtract();
+        }
+    }
+
+    /// Subtracts all pivots from the matrix.
+    fn subtract(&mut self) {
+        let (size, height) = (self.size, self.height());
+        let count = self.rows.len() / size.max(1);
+        let columns = MatRef::from_column_major_slice(&self.columns, height, count);
+        let rows = MatRef::from_row_major_slice(&self.rows, count, size);
+        let subtract = |tile: usize, target: &mut [f64]| {
+            let width = target.len() / height;
+            let rows = rows.subcols(tile * TILE, width);
+            let target = MatMut::from_column_major_slice_mut(target, height, width);
+            matmul(target, Accum::Add, columns, rows, -1.0, Par::Seq);
+        };
+        let matrix = &mut self.matrix[..height * size];
+        if size < PARALLEL {
+            let tiles = matrix.chunks_mut(TILE * height).enumerate();
+            tiles.for_each(|(tile, target)| subtract(tile, target));
+        } else {
+            parallel::for_each_chunk(matrix, TILE * height, subtract);
+        }
+        self.columns.clear();
+        self.rows.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows and columns of `matrix`, one node after the other exchanged as a textbook does it.
+    fn exchange(matrix: &mut [Vec<f64>], place: usize) {
+        let before = matrix.to_vec();
+        let pivot = before[place][place];
+        for (i, row) in matrix.iter_mut().enumerate() {
+            for (j, value) in row.iter_mut().enumerate() {
+                *value = match (i == place, j == place) {
+                    (true, true) => 1.0 / pivot,
+                    (true, false) => -before[i][j] / pivot,
+                    (false, true) => before[i][j] / pivot,
+                    (false, false) => before[i][j] - before[i][place] * before[place][j] / pivot,
+                };
+            }
+        }
+    }
+
+    /// More than two blocks of pivots, back and forth, and one more column: entries, columns and sums stay those of the
+    /// textbook's.
+    #[test]
+    fn exchanges_are_those_of_the_whole_matrix() {
+        for size in [1_usize, 7, 40] {
+            let entry = |i: usize, j: usize| {
+                let (i, j) = (i.min(j) as f64, i.max(j) as f64);
+                if i == j { 60.0 } else { libm::sin(3.0 * i + 7.0 * j * j) }
+            };
+            let mut rows: Vec<Vec<f64>> =
+                (0..size + 2).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect();
+            let flat = (0..size).flat_map(|j| (0..size + 2).map(move |i| entry(i, j))).collect();
+            let mut answers = Answers::new(flat, vec![false; size]);
+            let mut other: Vec<f64> = (0..size + 2).map(|i| i as f64 - 2.0).collect();
+            let mut with_other = other.clone();
+            for step in 0..80 {
+                let place = (step * 29 + 5) % size;
+                let pivot = rows[place][place];
+                let factor = with_other[place] / pivot;
+                for (i, value) in with_other.iter_mut().enumerate() {
+                    *value = if i == place { -factor } else { *value - factor * rows[i][place] };
+                }
+                exchange(&mut rows, place);
+                answers.pivot(place, [&mut other]);
+                if step % 7 == 3 {
+                    rows[place][place] += 0.5;
+                    answers.shift(place, 0.5);
+                }
+                for j in 0..size {
+                    let column = answers.column(j);
+                    for (i, row) in rows.iter().enumerate() {
+                        // Some dozens of rounding errors of numbers up to 60.
+                        assert!((column[i] - row[j]).abs() < 1e-11, "{size} {step}: {i} {j}");
+                        assert!((answers.entry(i, j) - row[j]).abs() < 1e-11);
+                    }
+                }
+                for (found, expected) in other.iter().zip(&with_other) {
+                    assert!((found - expected).abs() < 1e-11, "{size} {step}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The nodes on the slope of the law, with a factor of their matrix.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::solvers::Llt;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::prelude::Solve;
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+
+use crate::parallel;
+use crate::updater::Schur;
+
+/// Columns that a thread solves for at a time.
+const WIDTH: usize = 144;
+
+/// Soft nodes, and the Cholesky factor of M = 1/k − S_SS.
+#[derive(Debug)]
+pub(super) struct Soft {
+    /// Where they are among the watched nodes, ascending.
+    places: Vec<usize>,
+    factor: Llt<f64>,
+    /// The least pivot of M over 1/k, 1 at most.
+    pub(super) least_pivot: f64,
+}
+
+/// What columns of soft nodes become in front of the factor.
+#[derive(Debug)]
+pub(super) struct Half {
+    /// Row by row.
+    values: Vec<f64>,
+    width: usize,
+}
+
+impl Soft {
+    /// `None` if M is not positive definite: the state is not stable.
+    pub(super) fn of(schur: &Schur, places: Vec<usize>, compliance: f64) -> Option<Self> {
+        let size = places.len();
+        let mut matrix = Mat::zeros(size, size);
+        for (j, &column) in places.iter().enumerate() {
+            let values = schur.below(column);
+            for (i, &row) in places.iter().enumerate().skip(j) {
+                matrix[(i, j)] = -values[row - column];
+            }
+            matrix[(j, j)] += compliance;
+        }
+        let factor = matrix.llt(Side::Lower).ok()?;
+        let pivots = (0..size).map(|i| factor.L()[(i, i)].powi(2) / compliance);
+        let least_pivot = pivots.fold(1.0, f64::min);
+        Some(Self { places, factor, least_pivot })
+    }
+
+    /// The same nodes in the same order at other places.
+    pub(super) fn at(self, places: Vec<usize>) -> Self {
+        Self { places, ..self }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Where they are among the watched nodes, ascending.
+    pub(super) fn places(&self) -> &[usize] {
+        &self.places
+    }
+
+    /// M⁻¹ times two columns.
+    pub(super) fn solve(&self, right: [Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        let mut right = Mat::from_fn(self.len(), 2, |i, k| right[k][i]);
+        self.factor.solve_in_place(&mut right);
+        [0, 1].map(|k| right.col(k).iter().copied().collect())
+    }
+
+    /// L⁻¹ times some columns, given row by row.
+    pub(super) fn half(&self, mut values: Vec<f64>, width: usize) -> Half {
+        let size = self.len();
+        if size > 0 && width > 0 {
+            let all = MatMut::from_row_major_slice_mut(&mut values, size, width);
+            let mut parts = parts(all);
+            parallel::for_each(size * size * width / 2, &mut parts, |part| {
+                solve_lower_triangular_in_place(self.factor.L(), part.as_mut(), Par::Seq);
+            });
+        }
+        Half { values, width }
+    }
+
+    /// M⁻¹ times a combination of columns, so many, for each of some lists of factors, one after the other.
+    pub(super) fn combine(&self, half: &Half, columns: usize, factors: &[f64]) -> Mat<f64> {
+        let (size, lists) = (self.len(), factors.len() / columns.max(1));
+        let mut combined = Mat::zeros(size, lists);
+        if columns == 0 || size == 0 {
+            return combined;
+        }
+        let stored = MatRef::from_row_major_slice(&half.values, size, half.width);
+        let stored = stored.subcols(0, columns);
+        let factors = MatRef::from_column_major_slice(factors, columns, lists);
+        let upper = self.factor.L().transpose();
+        let work = size * lists * (columns + size / 2);
+        let mut parts: Vec<_> = parts(combined.as_mut()).into_iter().enumerate().collect();
+        parallel::for_each(work, &mut parts, |(part, target)| {
+            let factors = factors.subcols(*part * WIDTH, target.ncols());
+            matmul(target.as_mut(), Accum::Replace, stored, factors, 1.0, Par::Seq);
+            solve_upper_triangular_in_place(upper, target.as_mut(), Par::Seq);
+        });
+        combined
+    }
+}
+
+impl Half {
+    /// Products of all columns with each other, b_iᵀ M⁻¹ b_j for what the columns were of.
+    pub(super) fn gram(&self) -> Option<Schur> {
+        let mut gram = Schur::default();
+        gram.resize(self.width).ok()?;
+        gram.as_mut_slice().fill(0.0);
+        gram.add_gram(1.0, &self.values);
+        Some(gram)
+    }
+}
+
+/// Columns in parts of [`WIDTH`].
+fn parts(mut rest: MatMut<'_, f64>) -> Vec<MatMut<'_, f64>> {
+    let mut parts = Vec::new();
+    while rest.ncols() > WIDTH {
+        let (part, later) = rest.split_at_col_mut(WIDTH);
+        parts.push(part);
+        rest = later;
+    }
+    parts.push(rest);
+    parts
+}
