@@ -81,6 +81,8 @@ pub(super) struct Body {
     watched: Watched,
     /// What has joined last, until something else happens.
     joined: Option<Joined>,
+    /// What each node makes of the sums of pressures and of gaps on this contact, if it is known.
+    sums: Option<[Vec<f64>; 2]>,
     /// The least pivot of M over 1/k: gaps of soft nodes are known so many times less exactly than others.
     least_pivot: f64,
     convolution: Convolution,
@@ -122,6 +124,7 @@ impl Body {
             soft_factor: None,
             watched: Watched::default(),
             joined: None,
+            sums: None,
             least_pivot: 1.0,
             problem,
             law,
@@ -147,6 +150,7 @@ impl Body {
         let left: Vec<Left> = left.map(|(position, node)| Left { node, position }).collect();
         self.joined = None;
         if !left.is_empty() {
+            self.sums = None;
             self.leave(&left)?;
         }
         let nodes = 0..front.nodes.len();
@@ -154,6 +158,7 @@ impl Body {
             .filter(|&node| is(node, NodeState::Contact) && !self.contact.contains(node))
             .collect();
         if !joined.is_empty() {
+            self.sums = None;
             let places = self.watched.places(front.nodes.len());
             let places: Option<Vec<usize>> = joined.iter().map(|&node| places[node]).collect();
             if let Some(places) = places {
@@ -171,6 +176,7 @@ impl Body {
     /// Goes back to a front from the one that has been followed to last.
     pub(super) fn go_back(&mut self, front: &Front) -> Result<(), Error> {
         if let Some(joined) = self.joined.take() {
+            self.sums = None;
             self.contact.truncate(self.contact.len() - joined.nodes);
             self.updater.truncate(&self.problem, &self.contact)?;
             self.watched.schur.add_gram(1.0, &joined.columns);
@@ -313,7 +319,10 @@ impl Body {
     pub(super) fn rows(&mut self, front: &Front, nodes: &[usize]) -> Result<(Answers, Rows), Error> {
         let all: Vec<usize> = self.soft.iter().chain(nodes).copied().collect();
         self.watch(&all)?;
-        let sums = self.sums_by_node()?;
+        let sums = match self.sums.take() {
+            Some(sums) => sums,
+            None => self.sums_by_node()?,
+        };
         self.factor_soft()?;
         let places = self.watched.places(front.nodes.len());
         let of_rows: Vec<usize> = nodes.iter().filter_map(|&node| places[node]).collect();
@@ -352,6 +361,7 @@ impl Body {
                 };
             }
         }
+        self.sums = Some(sums);
         let with_pressure = |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
         let signs = states.iter().map(|state| if with_pressure(state) { -1.0 } else { 1.0 });
         let answers = Answers::new(matrix, states.iter().map(with_pressure).collect());
@@ -559,7 +569,7 @@ impl Body {
 
     /// What a unit of pressure at each node out of contact, or of gap at each in contact, makes of the sums of
     /// pressures and of gaps, the others in contact answering and no node soft.
-    pub(super) fn sums_by_node(&mut self) -> Result<[Vec<f64>; 2], Error> {
+    fn sums_by_node(&mut self) -> Result<[Vec<f64>; 2], Error> {
         let nodes = self.problem.initial_gap().len();
         let minus = [vec![-1.0; nodes], self.problem.row_sums().iter().map(|s| -s).collect()];
         let mut solved = self.solve([&minus[0], &minus[1]])?;

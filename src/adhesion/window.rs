@@ -20,6 +20,8 @@ const ROUNDING: f64 = 1e-12;
 const TRIES: usize = 60;
 /// Nodes that are watched beside all soft ones.
 const ALONE: usize = 64;
+/// A window is opened so often for nodes that it lacks before it is played with fewer events.
+const REOPENED: usize = 3;
 
 /// What a window needs to know of its path.
 pub(super) struct View<'a> {
@@ -59,13 +61,18 @@ pub(super) fn follow(
     let (mut most, mut watched) = (usize::MAX, size);
     for taken_back in 0..TRIES {
         let mut play = Play::open(body, front, field, view, (watched, &also))?;
-        let Some(ended) = play.play_out(body, front, field, most.min(size))? else {
-            if play.lacks_others {
-                // What happens first takes all soft nodes.
+        let may_grow = also.len() < size && taken_back < REOPENED;
+        let ended = match play.play_out(body, front, field, (most.min(size), may_grow))? {
+            Outcome::Nothing => return Ok(None),
+            Outcome::Led(ended) => ended,
+            Outcome::Lacks(nodes) => {
+                also.extend(nodes);
+                continue;
+            }
+            Outcome::LacksSoft => {
                 watched = usize::MAX;
                 continue;
             }
-            return Ok(None);
         };
         play.add_energies(body, field);
         body.follow(&ended)?;
@@ -78,7 +85,7 @@ pub(super) fn follow(
         let field = match (wrong.is_empty(), found) {
             (true, found) => found?,
             (false, _) => {
-                body.go_back(front)?;
+                        body.go_back(front)?;
                 let (node, value) = wrong[0];
                 let is_new = wrong.iter().any(|(node, _)| !also.contains(node));
                 if play.events <= 1 && !is_new {
@@ -133,6 +140,17 @@ fn excess(law: &CohesiveLaw, state: NodeState, [pressure, gap]: [f64; 2]) -> f64
         NodeState::Held => -gap,
         NodeState::Contact => -1.0 - pressure / law.stress(),
     }
+}
+
+/// Where a window leads before anything follows.
+enum Outcome {
+    /// Nothing has happened.
+    Nothing,
+    Led(Front),
+    /// Something happens to these nodes, which are not watched.
+    Lacks(Vec<usize>),
+    /// What happens first takes all soft nodes.
+    LacksSoft,
 }
 
 struct Play<'a> {
@@ -294,22 +312,24 @@ impl<'a> Play<'a> {
         self.given.push((self.time, self.given()));
     }
 
-    /// Plays so many events at most, as far as nothing happens to other nodes before. Returns where that leads; `None` if
-    /// nothing has happened.
+    /// Plays so many events at most, as far as nothing happens to other nodes before; or says which these are, if it may.
     fn play_out(
         &mut self,
         body: &mut Body,
         front: &Front,
         field: &Field,
-        most: usize,
-    ) -> Result<Option<Front>, Error> {
+        (most, may_grow): (usize, bool),
+    ) -> Result<Outcome, Error> {
         let begun = self.board.clone();
         let (mut most, mut until) = (most, f64::INFINITY);
         loop {
             self.run(most, until);
-            let Some(ended) = self.ended(front) else { return Ok(None) };
-            if self.events <= 1 {
-                return Ok(Some(ended));
+            if self.lacks_others && self.events == 0 {
+                return Ok(Outcome::LacksSoft);
+            }
+            let Some(ended) = self.ended(front) else { return Ok(Outcome::Nothing) };
+            if self.events == 0 {
+                return Ok(Outcome::Led(ended));
             }
             // What the carried row is given has its part in the rates along its pull.
             let alone = if self.parameter == Parameter::Approach { self.time } else { 0.0 };
@@ -318,8 +338,13 @@ impl<'a> Play<'a> {
             let found =
                 body.preview(&ended, (field, alone), &self.rows, (&rows, self.given()))?;
             let wrong = beyond(body, &ended, &found);
-            if wrong.is_empty() {
-                return Ok(Some(ended));
+            if wrong.is_empty() || self.events == 1 && !may_grow {
+                return Ok(Outcome::Led(ended));
+            }
+            let lacks: Vec<usize> =
+                wrong.iter().map(|&(node, _)| node).filter(|&node| !self.is_row(node)).collect();
+            if may_grow && !lacks.is_empty() {
+                return Ok(Outcome::Lacks(lacks));
             }
             // Gaps fall faster and faster on loading: a line comes too early.
             let crossings = wrong.iter().map(|&(node, after)| {
@@ -330,6 +355,7 @@ impl<'a> Play<'a> {
             let first = crossings.fold(f64::INFINITY, f64::min);
             // The second time that is not good enough.
             most = if until.is_finite() { self.events / 2 } else { self.events - 1 };
+            most = most.max(1);
             until = until.min(first);
             self.restart(&begun, front);
         }
@@ -347,10 +373,13 @@ impl<'a> Play<'a> {
         self.shortened += 1;
     }
 
+    fn is_row(&self, node: usize) -> bool {
+        self.begun.binary_search_by_key(&node, |row| row.node).is_ok()
+    }
+
     /// Adds the energies of soft nodes that were not watched.
     fn add_energies(&mut self, body: &Body, field: &Field) {
-        let is_row = |node: usize| self.begun.binary_search_by_key(&node, |row| row.node).is_ok();
-        let squares = body.squares(&self.rows, is_row, field, &self.given);
+        let squares = body.squares(&self.rows, |node| self.is_row(node), field, &self.given);
         let slope = self.board.law().slope();
         for ((.., moment, _), squares) in self.moments.iter_mut().zip(squares) {
             moment.energy -= 0.5 * squares / slope;
