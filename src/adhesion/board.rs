@@ -6,8 +6,9 @@ use super::state::NodeState;
 
 /// Pivots below this part of a compliance count as unstable.
 const LEAST_PIVOT: f64 = 1e-10;
-/// A window ends behind a pivot below this part: what it made of the matrix has lost digits.
-const SMALL_PIVOT: f64 = 1e-5;
+/// A window ends behind a pivot below this part: what it made of the matrix has lost three digits, and energies are to be
+/// known to 1e-12.
+const SMALL_PIVOT: f64 = 1e-3;
 /// Nodes within this part of the range, or of the stress, of an event have it together.
 const TIE: f64 = 1e-13;
 /// By how much a gap may be beside a corner of the law, relative to the range.

@@ -286,7 +286,8 @@ impl Body {
         // Those that were watched before come in the same order, and so do the soft ones among them.
         let places = self.watched.places(self.problem.initial_gap().len());
         let places: Option<Vec<usize>> = self.soft.iter().map(|&node| places[node]).collect();
-        self.soft_factor = self.soft_factor.take().zip(places).map(|(soft, places)| soft.at(places));
+        self.soft_factor =
+            self.soft_factor.take().zip(places).map(|(soft, places)| soft.at(places));
         Ok(())
     }
 
@@ -316,7 +317,11 @@ impl Body {
     }
 
     /// What some nodes answer to each other and what sums of pressures and of gaps do, with all soft nodes on their slope.
-    pub(super) fn rows(&mut self, front: &Front, nodes: &[usize]) -> Result<(Answers, Rows), Error> {
+    pub(super) fn rows(
+        &mut self,
+        front: &Front,
+        nodes: &[usize],
+    ) -> Result<(Answers, Rows), Error> {
         let all: Vec<usize> = self.soft.iter().chain(nodes).copied().collect();
         self.watch(&all)?;
         let sums = match self.sums.take() {
@@ -362,7 +367,8 @@ impl Body {
             }
         }
         self.sums = Some(sums);
-        let with_pressure = |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
+        let with_pressure =
+            |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
         let signs = states.iter().map(|state| if with_pressure(state) { -1.0 } else { 1.0 });
         let answers = Answers::new(matrix, states.iter().map(with_pressure).collect());
         Ok((answers, Rows { half, signs: signs.collect() }))
@@ -385,7 +391,8 @@ impl Body {
         let answers = soft.combine(&rows.half, rows.signs.len(), &factors);
         let is_other: Vec<bool> = self.soft.iter().map(|&node| !is_row(node)).collect();
         let lists = given.iter().enumerate().map(|(list, (time, _))| {
-            let nodes = self.soft.iter().zip(&is_other).enumerate().filter(|(_, (_, other))| **other);
+            let nodes =
+                self.soft.iter().zip(&is_other).enumerate().filter(|(_, (_, other))| **other);
             let squares = nodes.map(|(place, (&node, _))| {
                 let alone = field.pressure[0][node] + time * field.pressure[1][node];
                 (alone + answers[(place, list)]).powi(2)
@@ -497,7 +504,8 @@ impl Body {
         let nodes = front.nodes.len();
         let mut pressure = field.pressure[0].clone();
         let answers = self.soft_factor.as_ref().map(|soft| {
-            let factors: Vec<f64> = given.iter().zip(&rows.signs).map(|(x, sign)| x * sign).collect();
+            let factors: Vec<f64> =
+                given.iter().zip(&rows.signs).map(|(x, sign)| x * sign).collect();
             soft.combine(&rows.half, rows.signs.len(), &factors)
         });
         if let Some(answers) = answers {

@@ -1,8 +1,8 @@
 //! The events of a window: along one parameter, among the nodes that are watched.
 
 use super::board::{Beginning, Board, Change, LAG, Left, Row};
-use super::law::CohesiveLaw;
 use super::front::{Body, Field, Front, Parameter, Rows};
+use super::law::CohesiveLaw;
 use super::moment::{Moment, Totals};
 use super::state::{AdhesiveEvent, Direction, NodeState};
 use super::target::{Measured, Targets};
@@ -85,7 +85,7 @@ pub(super) fn follow(
         let field = match (wrong.is_empty(), found) {
             (true, found) => found?,
             (false, _) => {
-                        body.go_back(front)?;
+                body.go_back(front)?;
                 let (node, value) = wrong[0];
                 let is_new = wrong.iter().any(|(node, _)| !also.contains(node));
                 if play.events <= 1 && !is_new {
@@ -335,8 +335,7 @@ impl<'a> Play<'a> {
             let alone = if self.parameter == Parameter::Approach { self.time } else { 0.0 };
             let rows = self.board.rows.iter().map(|row| (row.node, [row.pressure, row.gap]));
             let rows: Vec<_> = rows.collect();
-            let found =
-                body.preview(&ended, (field, alone), &self.rows, (&rows, self.given()))?;
+            let found = body.preview(&ended, (field, alone), &self.rows, (&rows, self.given()))?;
             let wrong = beyond(body, &ended, &found);
             if wrong.is_empty() || self.events == 1 && !may_grow {
                 return Ok(Outcome::Led(ended));
@@ -500,8 +499,7 @@ impl<'a> Play<'a> {
         let next = self.board.next();
         let event = next.map_or(f64::INFINITY, |(time, _)| time);
         let step = event.min(carry.corner).min(carry.law).min(carry.end);
-        let is_beyond =
-            self.parameter != Parameter::Approach && self.time + step > self.end;
+        let is_beyond = self.parameter != Parameter::Approach && self.time + step > self.end;
         if step == f64::INFINITY || self.events > 0 && (is_beyond || self.events >= most) {
             return false;
         }

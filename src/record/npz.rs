@@ -60,58 +60,83 @@ struct Named {
 type Whole = fn(&LoadingState) -> usize;
 
 /// A scalar of a state, as a column of the archive.
-struct Column {
-    name: &'static str,
-    get: fn(&LoadingState) -> f64,
-    set: fn(&mut LoadingState, f64),
+#[derive(Clone, Copy)]
+pub(super) struct Column<S> {
+    pub(super) name: &'static str,
+    pub(super) get: fn(&S) -> f64,
+    pub(super) set: fn(&mut S, f64),
 }
 
-/// The columns of numbers that are not whole; NaN stands for a stiffness that there is not.
-const COLUMNS: [Column; 9] = [
-    Column { name: "approach", get: |s| s.contact.approach, set: |s, x| s.contact.approach = x },
-    Column { name: "load", get: |s| s.contact.load, set: |s, x| s.contact.load = x },
-    Column {
-        name: "contact_area",
-        get: |s| s.contact.contact_area,
-        set: |s, x| s.contact.contact_area = x,
-    },
-    Column {
-        name: "contact_area_fraction",
-        get: |s| s.contact.contact_area_fraction,
-        set: |s, x| s.contact.contact_area_fraction = x,
-    },
-    Column { name: "mean_gap", get: |s| s.contact.mean_gap, set: |s, x| s.contact.mean_gap = x },
-    Column {
-        name: "contact_stiffness",
-        get: |s| s.contact.contact_stiffness.unwrap_or(f64::NAN),
-        set: |s, x| s.contact.contact_stiffness = (!x.is_nan()).then_some(x),
-    },
-    Column {
-        name: "interfacial_stiffness",
-        get: |s| s.contact.interfacial_stiffness.unwrap_or(f64::NAN),
-        set: |s, x| s.contact.interfacial_stiffness = (!x.is_nan()).then_some(x),
-    },
-    Column { name: "energy", get: |s| s.contact.energy, set: |s, x| s.contact.energy = x },
-    Column { name: "approach_error", get: |s| s.approach_error, set: |s, x| s.approach_error = x },
-];
-
-/// The same of what has yielded.
-struct PlasticColumn {
-    name: &'static str,
-    get: fn(&PlasticState) -> f64,
-    set: fn(&mut PlasticState, f64),
+/// A state that has those of a contact.
+pub(super) trait OfContact {
+    fn contact(&self) -> &ContactState;
+    fn contact_mut(&mut self) -> &mut ContactState;
 }
 
-/// The columns of a path with a hardness.
-const PLASTIC_COLUMNS: [PlasticColumn; 4] = [
-    PlasticColumn { name: "plastic_volume", get: |s| s.volume, set: |s, x| s.volume = x },
-    PlasticColumn { name: "plastic_work", get: |s| s.work, set: |s, x| s.work = x },
-    PlasticColumn {
+impl OfContact for LoadingState {
+    fn contact(&self) -> &ContactState {
+        &self.contact
+    }
+
+    fn contact_mut(&mut self) -> &mut ContactState {
+        &mut self.contact
+    }
+}
+
+/// A column of a field of the contact.
+macro_rules! of_contact {
+    ($name:ident) => {
+        Column {
+            name: stringify!($name),
+            get: |state| state.contact().$name,
+            set: |state, value| state.contact_mut().$name = value,
+        }
+    };
+    // NaN stands for a stiffness that there is not.
+    ($name:ident or NaN) => {
+        Column {
+            name: stringify!($name),
+            get: |state| state.contact().$name.unwrap_or(f64::NAN),
+            set: |state, value| state.contact_mut().$name = (!value.is_nan()).then_some(value),
+        }
+    };
+}
+
+/// The columns of numbers that are not whole, of the contact of any state.
+pub(super) const fn contact_columns<S: OfContact>() -> [Column<S>; 8] {
+    [
+        of_contact!(approach),
+        of_contact!(load),
+        of_contact!(contact_area),
+        of_contact!(contact_area_fraction),
+        of_contact!(mean_gap),
+        of_contact!(contact_stiffness or NaN),
+        of_contact!(interfacial_stiffness or NaN),
+        of_contact!(energy),
+    ]
+}
+
+/// Those of a path without adhesion.
+const COLUMNS: [Column<LoadingState>; 9] = {
+    let [a, b, c, d, e, f, g, h] = contact_columns();
+    let error = Column {
+        name: "approach_error",
+        get: |state: &LoadingState| state.approach_error,
+        set: |state: &mut LoadingState, value| state.approach_error = value,
+    };
+    [a, b, c, d, e, f, g, h, error]
+};
+
+/// The columns of what has yielded, on a path with a hardness.
+const PLASTIC_COLUMNS: [Column<PlasticState>; 4] = [
+    Column { name: "plastic_volume", get: |s| s.volume, set: |s, x| s.volume = x },
+    Column { name: "plastic_work", get: |s| s.work, set: |s, x| s.work = x },
+    Column {
         name: "plastic_volume_per_load",
         get: |s| s.volume_per_load,
         set: |s, x| s.volume_per_load = x,
     },
-    PlasticColumn {
+    Column {
         name: "plastic_work_per_load",
         get: |s| s.work_per_load,
         set: |s, x| s.work_per_load = x,
@@ -202,7 +227,7 @@ impl LoadingRecord {
             let plastic = || states.iter().map(|state| state.contact.plastic.unwrap_or_default());
             let nodes = plastic().map(|plastic| plastic.yielded_nodes as i64);
             archive.integers("yielded_nodes", states.len(), nodes)?;
-            for PlasticColumn { name, get, .. } in PLASTIC_COLUMNS {
+            for Column { name, get, .. } in PLASTIC_COLUMNS {
                 archive.numbers(name, states.len(), plastic().map(|plastic| get(&plastic)))?;
             }
         }
@@ -334,7 +359,7 @@ impl LoadingRecord {
                 };
                 state.contact.plastic = Some(plastic);
             }
-            for PlasticColumn { name, set, .. } in PLASTIC_COLUMNS {
+            for Column { name, set, .. } in PLASTIC_COLUMNS {
                 let values = archive.vector(name, length)?;
                 for (state, value) in states.iter_mut().zip(values) {
                     if let Some(plastic) = &mut state.contact.plastic {

@@ -41,9 +41,8 @@ fn pull_off_of_the_shortest_range_comes_to_that_of_jkr() {
     assert!(errors[1] < errors[0], "{errors:?}");
 }
 
-/// Maugis' law at the number 3 of Tabor, 1.512, on 20 cells: it takes half a minute.
+/// Maugis' law at the number 3 of Tabor, 1.512, on 20 cells.
 #[test]
-#[ignore = "long"]
 fn pull_off_is_that_of_maugis_near_jkr() {
     let [found, _] = pull_off(20, 1.9, maugis(3.0));
     assert!((found / 1.512 - 1.0).abs() < 0.02, "{found}");

@@ -6,7 +6,7 @@ use std::path::Path;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::super::npz::{WITH_ADHESION as NAME, whole};
+use super::super::npz::{Column, OfContact, WITH_ADHESION as NAME, contact_columns, whole};
 use super::{AdhesiveRecord, KernelRecord};
 use crate::adhesion::{
     Adhesion, AdhesiveEvent, AdhesiveState, Change, Direction, NodeState, Trace,
@@ -39,39 +39,19 @@ struct Parameters {
     units: String,
 }
 
-/// A scalar of a state, as a column of the archive.
-struct Column {
-    name: &'static str,
-    get: fn(&AdhesiveState) -> f64,
-    set: fn(&mut AdhesiveState, f64),
+impl OfContact for AdhesiveState {
+    fn contact(&self) -> &ContactState {
+        &self.contact
+    }
+
+    fn contact_mut(&mut self) -> &mut ContactState {
+        &mut self.contact
+    }
 }
 
-/// The columns of numbers that are not whole; NaN stands for a stiffness that there is not.
-const COLUMNS: [Column; 11] = [
-    Column { name: "approach", get: |s| s.contact.approach, set: |s, x| s.contact.approach = x },
-    Column { name: "load", get: |s| s.contact.load, set: |s, x| s.contact.load = x },
-    Column {
-        name: "contact_area",
-        get: |s| s.contact.contact_area,
-        set: |s, x| s.contact.contact_area = x,
-    },
-    Column {
-        name: "contact_area_fraction",
-        get: |s| s.contact.contact_area_fraction,
-        set: |s, x| s.contact.contact_area_fraction = x,
-    },
-    Column { name: "mean_gap", get: |s| s.contact.mean_gap, set: |s, x| s.contact.mean_gap = x },
-    Column {
-        name: "contact_stiffness",
-        get: |s| s.contact.contact_stiffness.unwrap_or(f64::NAN),
-        set: |s, x| s.contact.contact_stiffness = (!x.is_nan()).then_some(x),
-    },
-    Column {
-        name: "interfacial_stiffness",
-        get: |s| s.contact.interfacial_stiffness.unwrap_or(f64::NAN),
-        set: |s, x| s.contact.interfacial_stiffness = (!x.is_nan()).then_some(x),
-    },
-    Column { name: "energy", get: |s| s.contact.energy, set: |s, x| s.contact.energy = x },
+/// The columns of numbers that are not whole: those of every contact, and of adhesion.
+const COLUMNS: [Column<AdhesiveState>; 8] = contact_columns();
+const ADHESIVE_COLUMNS: [Column<AdhesiveState>; 3] = [
     Column {
         name: "adhesive_energy",
         get: |s| s.adhesive_energy,
@@ -148,7 +128,7 @@ impl AdhesiveRecord {
         for (name, get) in whole {
             archive.integers(name, states.len(), states.iter().map(|s| get(s) as i64))?;
         }
-        for Column { name, get, .. } in COLUMNS {
+        for Column { name, get, .. } in COLUMNS.iter().chain(&ADHESIVE_COLUMNS) {
             archive.numbers(name, states.len(), states.iter().map(get))?;
         }
         let of_changes: [(&str, OfChange); 3] = [
@@ -246,7 +226,7 @@ impl AdhesiveRecord {
                 work: 0.0,
             });
         }
-        for Column { name, set, .. } in COLUMNS {
+        for Column { name, set, .. } in COLUMNS.iter().chain(&ADHESIVE_COLUMNS) {
             let values = archive.vector(name, length)?;
             states.iter_mut().zip(values).for_each(|(state, value)| set(state, value));
         }
