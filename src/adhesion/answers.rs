@@ -13,10 +13,11 @@ const PARALLEL: usize = 400;
 
 /// The matrix T of how each of some nodes answers to what is given of the others, with two more rows, of sums.
 ///
-/// Of every node one of two quantities is given and the other answers. [Exchanging](Self::pivot) both is a pivot: `T_ij`,
+/// Of every node one of two quantities is given and the other answers. [Exchanging](Self::pivot) both is a pivot:
+/// `T_ij`,
 /// `i, j ≠ s`, loses `T_is T_sj / T_ss`, which is a column times a row. These are kept, and subtracted from all of the
-/// matrix a block at a time. Rows follow from columns: T is symmetric but for a sign where one of the two answers with its
-/// pressure and the other does not.
+/// matrix a block at a time. Rows follow from columns: T is symmetric but for a sign where one of the two answers with
+/// its pressure and the other does not.
 #[derive(Debug, Clone)]
 pub(super) struct Answers {
     size: usize,

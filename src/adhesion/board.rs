@@ -6,8 +6,8 @@ use super::state::NodeState;
 
 /// Pivots below this part of a compliance count as unstable.
 const LEAST_PIVOT: f64 = 1e-10;
-/// A window ends behind a pivot below this part: what it made of the matrix has lost three digits, and energies are to be
-/// known to 1e-12.
+/// A window ends behind a pivot below this part: what it made of the matrix has lost three digits, and energies are to
+/// be known to 1e-12.
 const SMALL_PIVOT: f64 = 1e-3;
 /// Nodes within this part of the range, or of the stress, of an event have it together.
 const TIE: f64 = 1e-13;
@@ -38,9 +38,9 @@ pub(crate) struct Change {
 ///
 /// Of every node one of two quantities is given and the other answers. Where its gap is 0 the pressure answers; on the
 /// slope of the law it does too, and gap − p/k = h₂ is given; elsewhere the gap answers to a pressure that is given. A
-/// node that changes from one kind to another is a pivot of the matrix. That of a node that touches is positive, and that
-/// of one that becomes soft, T_ss − 1/k, is negative in a stable state: it is quasi-definite as that of a path with a
-/// hardness, but its nodes also go back. Soft nodes that are not watched answer all the time.
+/// node that changes from one kind to another is a pivot of the matrix. That of a node that touches is positive, and
+/// that of one that becomes soft, T_ss − 1/k, is negative in a stable state: it is quasi-definite as that of a path
+/// with a hardness, but its nodes also go back. Soft nodes that are not watched answer all the time.
 #[derive(Debug, Clone)]
 pub(super) struct Board {
     law: CohesiveLaw,
@@ -48,7 +48,8 @@ pub(super) struct Board {
     answers: Answers,
     /// Rates along the parameter of what answers, and of the sums of all pressures and of all gaps.
     along: Vec<f64>,
-    /// The same along the approach while the pull of a row is the parameter, if the window has begun along the approach.
+    /// The same along the approach while the pull of a row is the parameter, if the window has begun along the
+    /// approach.
     along_approach: Option<Vec<f64>>,
     /// Sums of all pressures and of all gaps.
     pub(super) sums: [f64; 2],

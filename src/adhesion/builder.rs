@@ -57,9 +57,9 @@ impl AdhesiveBuilder<'_> {
         self
     }
 
-    /// How many nodes to watch beside those that are pulled with the greatest stress: as many events at most follow from
-    /// one solution. By default 64, or a quarter of the soft nodes. States do not depend on it, except by rounding. With 1
-    /// every event has a solution of its own.
+    /// How many nodes to watch beside those that are pulled with the greatest stress: as many events at most follow
+    /// from one solution. By default 64, or a quarter of the soft nodes. States do not depend on it, except by
+    /// rounding. With 1 every event has a solution of its own.
     pub fn window_size(mut self, nodes: usize) -> Self {
         self.window_size = Some(nodes);
         self

@@ -99,7 +99,8 @@ struct Watched {
 #[derive(Debug)]
 struct Joined {
     nodes: usize,
-    /// Of the nodes that did not join, in their order: columns of a matrix whose products with themselves the others took.
+    /// Of the nodes that did not join, in their order: columns of a matrix whose products with themselves the others
+    /// took.
     columns: Vec<f64>,
 }
 
@@ -316,7 +317,8 @@ impl Body {
         Ok(self.soft_factor.insert(factor))
     }
 
-    /// What some nodes answer to each other and what sums of pressures and of gaps do, with all soft nodes on their slope.
+    /// What some nodes answer to each other and what sums of pressures and of gaps do, with all soft nodes on their
+    /// slope.
     pub(super) fn rows(
         &mut self,
         front: &Front,
@@ -374,8 +376,8 @@ impl Body {
         Ok((answers, Rows { half, signs: signs.collect() }))
     }
 
-    /// Sums of the squares of the pressures of soft nodes that are no rows, for each of some lists of what is given of the
-    /// rows, and what the approach makes of these pressures by itself in so long.
+    /// Sums of the squares of the pressures of soft nodes that are no rows, for each of some lists of what is given of
+    /// the rows, and what the approach makes of these pressures by itself in so long.
     pub(super) fn squares(
         &self,
         rows: &Rows,
@@ -492,8 +494,8 @@ impl Body {
         Ok(field)
     }
 
-    /// Pressures and gaps behind a window that nothing has followed yet: of its rows they are known, and contact and soft
-    /// nodes answer as before it. No rates.
+    /// Pressures and gaps behind a window that nothing has followed yet: of its rows they are known, and contact and
+    /// soft nodes answer as before it. No rates.
     pub(super) fn preview(
         &mut self,
         front: &Front,

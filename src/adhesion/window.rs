@@ -12,8 +12,8 @@ use crate::kernel::Gauge;
 use crate::{Error, Grid};
 
 /// By how much a node may be beyond its law at the end of a window, in pressures relative to the stress, in gaps to the
-/// range: ten times the lag with which a node that is carried is put on its law, which others answer to. Of gaps there is
-/// rounding of the greatest length besides, which soft nodes near an instability amplify.
+/// range: ten times the lag with which a node that is carried is put on its law, which others answer to. Of gaps there
+/// is rounding of the greatest length besides, which soft nodes near an instability amplify.
 const SLACK: f64 = 10.0 * LAG;
 const ROUNDING: f64 = 1e-12;
 /// A window that its end contradicts is tried again so often, with fewer events and more nodes.
@@ -130,7 +130,8 @@ fn beyond(body: &Body, front: &Front, field: &Field) -> Vec<(usize, f64)> {
     nodes.collect()
 }
 
-/// How far pressure and gap of a node are beyond the law of its state, relative to stress and range; below 0 on the law.
+/// How far pressure and gap of a node are beyond the law of its state, relative to stress and range; below 0 on the
+/// law.
 fn excess(law: &CohesiveLaw, state: NodeState, [pressure, gap]: [f64; 2]) -> f64 {
     let (gap, flat) = (gap / law.range(), law.flat_range() / law.range());
     match state {
@@ -312,7 +313,8 @@ impl<'a> Play<'a> {
         self.given.push((self.time, self.given()));
     }
 
-    /// Plays so many events at most, as far as nothing happens to other nodes before; or says which these are, if it may.
+    /// Plays so many events at most, as far as nothing happens to other nodes before; or says which these are, if it
+    /// may.
     fn play_out(
         &mut self,
         body: &mut Body,
@@ -396,7 +398,8 @@ impl<'a> Play<'a> {
         }
     }
 
-    /// From the approach to the pull of a node that is held, or on to the next one, or back; false once the window ends.
+    /// From the approach to the pull of a node that is held, or on to the next one, or back; false once the window
+    /// ends.
     fn turn(&mut self, most: usize) -> bool {
         if self.board.carries() {
             return true;

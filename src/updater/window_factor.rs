@@ -207,8 +207,8 @@ impl WindowFactor {
     }
 
     /// The matrix of the nodes at `stay` (ascending) and, behind them, of those of the events, all of which left a
-    /// contact: from the Schur complement S once all events have been subtracted. With R of those that stay and R₁ of those
-    /// that left, their pressures given and no longer their gaps,
+    /// contact: from the Schur complement S once all events have been subtracted. With R of those that stay and R₁ of
+    /// those that left, their pressures given and no longer their gaps,
     ///
     /// ```text
     /// S    R R₁⁻¹

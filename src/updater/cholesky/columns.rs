@@ -350,8 +350,8 @@ impl Columns {
     }
 
     /// Lets the columns at `kept` follow a factor that loses rows at `positions` (both ascending), and appends those of
-    /// the nodes that leave: their rows of L, zero behind the diagonal. Of the remaining rows behind the first that goes
-    /// each has its rotations, as [`remove_and`](super::panels::remove_and) makes them.
+    /// the nodes that leave: their rows of L, zero behind the diagonal. Of the remaining rows behind the first that
+    /// goes each has its rotations, as [`remove_and`](super::panels::remove_and) makes them.
     ///
     /// With `C_IP = L F` and the remaining rows `L Q = (L', 0)` the columns are the first rows of `Qᵀ F`.
     pub(super) fn leave(

@@ -70,8 +70,8 @@ impl RecursiveCholesky {
         &self.border
     }
 
-    /// The same as [`watch_both`](LinearUpdater::watch_both), where nodes in contact have their positions and come in any
-    /// order, and `schur` has the matrix of the first `known` of them, those that were watched before.
+    /// The same as [`watch_both`](LinearUpdater::watch_both), where nodes in contact have their positions and come in
+    /// any order, and `schur` has the matrix of the first `known` of them, those that were watched before.
     pub(crate) fn watch_beside(
         &mut self,
         problem: &Problem,

@@ -6,8 +6,8 @@ use asperity_cli::outcome::Failure;
 use super::super::expected::Expected;
 use super::super::job::Job;
 
-/// Of 128² and 256² nodes at 10 % of contact, with w = 10⁻⁴ E* times the side: the time of a branch over that of the path
-/// without adhesion to as many nodes, and what it holds over what that holds.
+/// Of 128² and 256² nodes at 10 % of contact, with w = 10⁻⁴ E* times the side: the time of a branch over that of the
+/// path without adhesion to as many nodes, and what it holds over what that holds.
 const SLOWER: f64 = 8.0;
 const LARGER: f64 = 3.0;
 
