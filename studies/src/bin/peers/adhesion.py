@@ -57,5 +57,6 @@ for nodes, seed in ((32, 1), (48, 2), (64, 3), (40, 4)):
             difference = abs(theirs - pressure).max() / abs(pressure).max()
             others = int(((their_gap < law_range) != (gap < law_range)).sum())
             states, other_nodes, worst = states + 1, other_nodes + others, max(worst, difference)
-            print(f"{nodes:5}  {branch:9}  {state.contact_nodes:10}  {int(pulled.sum()):6}  {difference:19.1e}  {others}", flush=True)
+            counts = f"{state.contact_nodes:10}  {int(pulled.sum()):6}"
+            print(f"{nodes:5}  {branch:9}  {counts}  {difference:19.1e}  {others}", flush=True)
 print(f"{states} states: pressures within {worst:.1e} of the greatest, {other_nodes} nodes pulled by one alone")
