@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use asperity::contact::PlasticState;
 use asperity::patches::ContactEdge;
-use asperity::{Boundary, ContactState, Error, Grid, LoadingState, loading};
+use asperity::{Boundary, ContactEvent, ContactState, Error, Grid, LoadingState, loading};
 use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use pyo3::types::{PyDict, PySlice, PySliceMethods, PyTuple};
 use crate::arrays::{column, shape};
 use crate::choice::{BOUNDARIES, LAYERINGS, choose, word};
 use crate::errors::{Failure, Fallible};
-use crate::state::{self, EVENTS, State};
+use crate::state::{self, State};
 use crate::targets::Targets;
 
 /// A number of a state, and how it is put into one.
@@ -241,21 +241,21 @@ impl History {
     /// What happens: ``"touch"``, ``"release"``, ``"limit"`` or ``"yield"``, as an array of text.
     #[getter]
     fn event<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<PyFixedUnicode<7>>> {
-        let letters = EVENTS.map(|word| {
+        let letters = ContactEvent::ALL.map(|event| {
             let mut letters = [0_u32; 7];
-            for (letter, character) in letters.iter_mut().zip(word.chars()) {
+            for (letter, character) in letters.iter_mut().zip(event.name().chars()) {
                 *letter = character.into();
             }
             PyFixedUnicode(letters)
         });
-        let events = self.states().iter().map(|s| letters[state::code(s.event) as usize]);
+        let events = self.states().iter().map(|s| letters[usize::from(s.event.code())]);
         column(py, events.collect())
     }
 
     /// The same as numbers, int8: places in `EVENTS`, for ``pandas.Categorical.from_codes(h.event_code, asp.EVENTS)``.
     #[getter]
     fn event_code<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i8>> {
-        column(py, self.states().iter().map(|s| state::code(s.event)).collect())
+        column(py, self.states().iter().map(|s| s.event.code().cast_signed()).collect())
     }
 
     /// Number of nodes in contact.
@@ -442,7 +442,7 @@ pub(crate) fn table<'py>(py: Python<'py>, states: &[LoadingState]) -> Fallible<B
     // -1 where there is no hardness.
     let yielded = states.iter().map(|s| s.contact.plastic.map_or(-1, |p| p.yielded_nodes as i64));
     table.set_item("yielded_nodes", column(py, yielded.collect()))?;
-    let events: Vec<i8> = states.iter().map(|s| state::code(s.event)).collect();
+    let events: Vec<i8> = states.iter().map(|s| s.event.code().cast_signed()).collect();
     table.set_item("event", column(py, events))?;
     for real in &REALS {
         table.set_item(real.name, column(py, states.iter().map(real.get).collect()))?;

@@ -6,33 +6,10 @@ use pyo3::types::PyTuple;
 
 use crate::errors::{Failure, Fallible};
 
-/// The words for events, in the order of their codes: those of a record.
-pub(crate) const EVENTS: [&str; 4] = ["touch", "release", "limit", "yield"];
-
-/// The number of an event.
-pub(crate) fn code(event: ContactEvent) -> i8 {
-    match event {
-        ContactEvent::Touch => 0,
-        ContactEvent::Release => 1,
-        ContactEvent::Yield => 3,
-        _ => 2,
-    }
-}
-
 /// The event of a number.
 pub(crate) fn event(code: i8) -> Fallible<ContactEvent> {
-    match code {
-        0 => Ok(ContactEvent::Touch),
-        1 => Ok(ContactEvent::Release),
-        2 => Ok(ContactEvent::Limit),
-        3 => Ok(ContactEvent::Yield),
-        _ => Err(Failure::arguments(format!("no event has the code {code}"))),
-    }
-}
-
-/// The word for an event.
-pub(crate) fn word(event: ContactEvent) -> &'static str {
-    EVENTS[code(event) as usize]
+    let all = ContactEvent::ALL.get(usize::from(code.cast_unsigned()));
+    all.copied().ok_or_else(|| Failure::arguments(format!("no event has the code {code}")))
 }
 
 /// A state of contact: the instant at which a node touches, yields or leaves, or one between two of these.
@@ -70,7 +47,7 @@ impl State {
     /// What happens: ``"touch"``, ``"release"``, ``"yield"``, or nothing, at a ``"limit"``.
     #[getter]
     fn event(&self) -> &'static str {
-        word(self.state.event)
+        self.state.event.name()
     }
 
     /// Row of the node to which it happens; at a limit of that of the last event.
@@ -209,6 +186,6 @@ impl State {
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("EVENTS", PyTuple::new(module.py(), EVENTS)?)?;
+    module.add("EVENTS", PyTuple::new(module.py(), ContactEvent::ALL.map(ContactEvent::name))?)?;
     module.add_class::<State>()
 }

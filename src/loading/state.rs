@@ -19,6 +19,33 @@ pub enum ContactEvent {
     Limit,
 }
 
+impl ContactEvent {
+    /// All events, each at the place of its number in records.
+    pub const ALL: [Self; 4] = [Self::Touch, Self::Release, Self::Limit, Self::Yield];
+
+    /// Its number in records.
+    #[must_use]
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Touch => 0,
+            Self::Release => 1,
+            Self::Limit => 2,
+            Self::Yield => 3,
+        }
+    }
+
+    /// Its name in files and tables: `touch` for [`Self::Touch`].
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Touch => "touch",
+            Self::Release => "release",
+            Self::Limit => "limit",
+            Self::Yield => "yield",
+        }
+    }
+}
+
 /// A state of a path: the instant of an event, with the event already done.
 ///
 /// The node that touches or leaves has no pressure at that instant; one that yields has its hardness, and no plastic
@@ -61,5 +88,17 @@ impl LoadingState {
     /// The state at a limit, if that is not the state itself.
     pub(super) fn at_limit(self, contact: ContactState) -> Option<Self> {
         (contact != self.contact).then_some(Self { event: ContactEvent::Limit, contact, ..self })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_are_at_the_places_of_their_numbers() {
+        for (place, event) in ContactEvent::ALL.into_iter().enumerate() {
+            assert_eq!(usize::from(event.code()), place, "{}", event.name());
+        }
     }
 }

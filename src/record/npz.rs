@@ -218,7 +218,7 @@ impl LoadingRecord {
         for (name, get) in whole {
             archive.integers(name, states.len(), states.iter().map(|s| get(s) as i64))?;
         }
-        let events = states.iter().map(|state| code(state.event));
+        let events = states.iter().map(|state| i64::from(state.event.code()));
         archive.integers("event", states.len(), events)?;
         for Column { name, get, .. } in COLUMNS {
             archive.numbers(name, states.len(), states.iter().map(get))?;
@@ -389,21 +389,9 @@ pub(super) fn whole(value: f64) -> usize {
     value as usize
 }
 
-/// The number of an event in a file.
-fn code(event: ContactEvent) -> i64 {
-    match event {
-        ContactEvent::Touch => 0,
-        ContactEvent::Release => 1,
-        ContactEvent::Limit => 2,
-        ContactEvent::Yield => 3,
-    }
-}
-
 /// The event of a number.
 fn event(code: f64) -> Option<ContactEvent> {
-    use ContactEvent::{Limit, Release, Touch, Yield};
-    let all = [Touch, Release, Limit, Yield];
-    all.into_iter().find(|event| self::code(*event) as f64 == code)
+    ContactEvent::ALL.into_iter().find(|event| f64::from(event.code()) == code)
 }
 
 #[cfg(test)]

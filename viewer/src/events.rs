@@ -8,22 +8,12 @@ use serde_json::{Map, Value, json};
 use crate::blob::planes;
 use crate::column::{count, optional, quantity};
 
-/// The number of an event in the page, which is that of records.
-fn code(event: ContactEvent) -> u32 {
-    match event {
-        ContactEvent::Touch => 0,
-        ContactEvent::Release => 1,
-        ContactEvent::Yield => 3,
-        _ => 2,
-    }
-}
-
 /// All events of a record.
 pub(crate) fn of(record: &LoadingRecord) -> Result<Value, Error> {
     let (states, grid) = (record.states(), record.grid());
     let nodes: Vec<u32> =
         states.iter().map(|state| (state.node.0 + grid.nx() * state.node.1) as u32).collect();
-    let kinds: Vec<u32> = states.iter().map(|state| code(state.event)).collect();
+    let kinds: Vec<u32> = states.iter().map(|state| state.event.code().into()).collect();
     let column = |unit: &str, value: fn(&LoadingState) -> f64| {
         quantity(unit, &states.iter().map(value).collect::<Vec<_>>())
     };

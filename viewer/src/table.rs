@@ -1,7 +1,7 @@
 //! The table `path.csv`: one line for each state.
 
 use asperity::patches::ContactEdge;
-use asperity::{Boundary, ContactEvent, Error, Grid, LoadingState};
+use asperity::{Boundary, Error, Grid, LoadingState};
 
 /// Writes the lines of `path.csv`, in the order of the states.
 ///
@@ -51,7 +51,7 @@ impl PathTable {
         Ok(format!(
             "{},{ix},{iy},{},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e},{:e}",
             state.step,
-            in_words(state.event),
+            state.event.name(),
             contact.approach,
             contact.load,
             contact.contact_area,
@@ -69,14 +69,4 @@ impl PathTable {
 /// Empty where there is none: on a periodic half-space.
 fn stiffness(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| format!("{value:e}"))
-}
-
-/// The name of an event.
-fn in_words(event: ContactEvent) -> &'static str {
-    match event {
-        ContactEvent::Touch => "touch",
-        ContactEvent::Yield => "yield",
-        ContactEvent::Release => "release",
-        _ => "limit",
-    }
 }

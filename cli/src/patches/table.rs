@@ -36,8 +36,7 @@ fn lines(record: &LoadingRecord, followed: &Followed) -> Result<String, fmt::Err
             continue;
         };
         let event = match (state.event, patches.event) {
-            (ContactEvent::Limit, _) => "limit",
-            (ContactEvent::Yield, _) => "yield",
+            (ContactEvent::Limit | ContactEvent::Yield, _) => state.event.name(),
             (_, PatchEvent::Birth) => "birth",
             (_, PatchEvent::Growth) => "growth",
             (_, PatchEvent::Merge { .. }) => "merge",

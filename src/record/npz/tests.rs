@@ -68,7 +68,7 @@ fn archive(
     column("ix", &|state| state.node.0 as f64)?;
     column("iy", &|state| state.node.1 as f64)?;
     column("contact_nodes", &|state| state.contact.contact_nodes as f64)?;
-    column("event", &|state| code(state.event) as f64)?;
+    column("event", &|state| f64::from(state.event.code()))?;
     for Column { name, get, .. } in COLUMNS {
         column(name, &get)?;
     }

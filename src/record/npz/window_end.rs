@@ -36,7 +36,7 @@ use std::io::{Seek, Write};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::{COLUMNS, Column, PLASTIC_COLUMNS, code, event, whole};
+use super::{COLUMNS, Column, PLASTIC_COLUMNS, event, whole};
 use crate::contact::{ContactState, PlasticState};
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::loading::{EstimatedEnd, FactorEnd, FactorLog, LoadingState, NextWindow, WindowEnd};
@@ -128,7 +128,7 @@ pub(super) fn write(
 ) -> std::io::Result<()> {
     let ahead = end.ahead.iter().flat_map(|state| {
         let (ix, iy) = state.node;
-        let event = code(state.event) as usize;
+        let event = usize::from(state.event.code());
         let whole = [state.step, ix, iy, state.contact.contact_nodes, event];
         let columns = COLUMNS.iter().map(|column| (column.get)(state));
         whole.into_iter().map(|number| number as f64).chain(columns).collect::<Vec<_>>()
