@@ -78,7 +78,6 @@ fn run(options: &Options) -> Result<(), Failure> {
     }
     quadrature(&mut text).map_err(failed)?;
     padded(&mut text).map_err(failed)?;
-    iterations(options.nodes, "", &mut text).map_err(failed)?;
     let picture = coats(&options.out, &mut text)?;
     let section = Section { study: "layers", text: &text, pictures: &[picture] };
     section.show(options.report.as_deref())
@@ -312,7 +311,7 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
         text,
         "\n**Coats on steel.** A self-affine surface of {n} × {n} nodes on 1 mm × 1 mm (Sq 1 µm, shortest wavelength 8 \
          cells) against steel with a coat of 20 µm, 2.6 cells, to 30 % contact:\n\n\
-         | body | promise | events | nodes that left | load at 10 % | K_i there |\n|---|---|---:|---:|---:|---:|\n"
+         | body | nodes that left | load at 10 % | K_i there |\n|---|---:|---:|---:|\n"
     );
     for (name, colour, kernel) in bodies {
         let start = Instant::now();
@@ -325,9 +324,7 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
         if let Some(state) = history.at_area_fraction(0.1) {
             let _ = writeln!(
                 text,
-                "| {name} | {:?} | {} | {left} | {:.2} kN | {:.3} GN/m |",
-                kernel.contact_growth(),
-                states.len(),
+                "| {name} | {left} | {:.2} kN | {:.3} GN/m |",
                 state.contact.load / 1e3,
                 state.contact.interfacial_stiffness.unwrap_or(f64::NAN) / 1e9
             );

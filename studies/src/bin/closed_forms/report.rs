@@ -34,8 +34,7 @@ impl Report {
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "## Closed forms\n\n\
-             Study `closed_forms`.\n\n\
-             `FixedLoadSolver` to {} against `asperity::reference`, which shares no code with it, at equal load: the \
+             Study `closed_forms`: `FixedLoadSolver` to {} against `asperity::reference`, which shares no code with it, at equal load: the \
              root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a target (of radii, for the \
              circular punch) and four places of the apex between the nodes. Cells are counted over the radius of the \
              contact, the shorter semi-axis or the half-width. Pressures are the greatest; those of the cone and the \

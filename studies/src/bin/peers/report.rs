@@ -72,8 +72,7 @@ impl<'a> Cell<'a> {
 }
 
 fn table(rows: &[Row], surfaces: &[&str]) -> String {
-    let mut text = "| program, half-space | entries | agree | nodes that differ | pressure | mean gap | stiffness |\n\
-                    |---|---|---|---|---|---|---|\n"
+    let mut text = "| program, half-space | entries | agree | pressure | mean gap | stiffness |\n|---|---|---|---|---|---|\n"
         .to_string();
     for (program, half_space) in COLUMNS {
         let cells = surfaces.iter().filter_map(|name| Cell::new(rows, name, (program, half_space)));
@@ -86,10 +85,9 @@ fn table(rows: &[Row], surfaces: &[&str]) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "| {program}, {half_space} | {} | {} | {} | {} | {} | {} |",
+            "| {program}, {half_space} | {} | {} | {} | {} | {} |",
             cells.len(),
             agree.len(),
-            agree.iter().map(|cell| cell.nodes()).sum::<usize>(),
             worst(&|cell| cell.pressure()),
             worst(&|cell| cell.gap()),
             worst(&|cell| cell.stiffness().unwrap_or(0.0)),
@@ -130,8 +128,7 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
     let mut text = format!(
         "## Other programs\n\n\
          Study `peers`: other programs on the same surfaces, loads and half-spaces. `studies/src/bin/peers/peers.sh` \
-         installs and runs them; the study stops if its own results differ from those that the stored ones were \
-         compared with.\n\n\
+         installs and runs them.\n\n\
          * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py`: the influence matrix entry by \
          entry, LU on the contact set, and the set changed until the conditions of contact hold to rounding, on grids \
          of up to 1024 nodes.\n\
@@ -183,8 +180,7 @@ fn shortest_waves(waves: &[Wave]) -> String {
     let each = waves.iter().filter(wrong).map(|wave| {
         let k = wave.wave_number as f64;
         format!(
-            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of 2/(E\\*|q|); the mean of \
-             1/{k} and 1/{} would be {:.6}",
+            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of that, and ½ (1 + {k}/{}) = {:.6}",
             wave.program,
             wave.nx,
             wave.ny,
@@ -199,16 +195,15 @@ fn shortest_waves(waves: &[Wave]) -> String {
     let why = match wrong.len() {
         0 => "All are right.".to_string(),
         count => format!(
-            "All but {count} are right within {}: {}. With an odd number of nodes along its first axis tamaas gives \
-             one of the two conjugates of the shortest wave the wave number of the next shorter one.",
+            "All but {count} are right within {}: {}. With an odd number of nodes along its first axis tamaas takes \
+             one of the two conjugates of the shortest wave for the next shorter wave.",
             scientific(WAVE, 1),
             wrong.join("; "),
         ),
     };
     format!(
-        "\n\n**Why.** A pressure that is a single wave must give a displacement of 2/(E\\*|q|) \
-        times that pressure: {} of the shortest waves were given to tamaas and ContactMechanics \
-        (`waves.csv`). {why}",
+        "\n\n**Why.** A wave of pressure displaces by 2/(E\\*|q|) times itself: {} of the shortest waves were given \
+         to tamaas and ContactMechanics (`waves.csv`). {why}",
         waves.len(),
     )
 }

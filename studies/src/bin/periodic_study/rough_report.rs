@@ -85,7 +85,7 @@ impl Study {
             "| p̄/(E\\* h′) | A/A₀ | Persson | κ = A E\\* h′/(A₀ p̄) | κ, corrected | ḡ/h_rms | \
                         K_i h_rms/(A₀ p̄) |\n|---|---|---|---|---|---|---|\n"
                 .to_string();
-        for load in (0..self.loads).step_by((self.loads / 4).max(1)) {
+        for load in (0..self.loads).step_by((self.loads / 2).max(1)) {
             let Some(first) = self.at(load).next() else {
                 break;
             };

@@ -28,8 +28,9 @@ impl Convergence {
              The path of a sinusoidal surface to full contact, for both periodic kernels, with a row of nodes on the \
              crest, against the closed form of H. M. Westergaard (1939, `reference::Westergaard`):\n\n\
              ![Errors of mean gap, area and stiffness against the nodes along a wave](images/westergaard.png)\n\n{}\n\
-             Greatest errors: of the mean gap at any event; of the area just before a row of nodes touches, and of the \
-             stiffness, between 10 and 90 % of the load of full contact. That load is exact to rounding, {exact:.0e}, \
+             Greatest errors, in brackets the order at which they fall: of the mean gap at any event; of the area just \
+             before a row of nodes touches, and of the stiffness, between 10 and 90 % of the load of full contact. That \
+             load is exact to rounding, {exact:.0e}, \
              for the spectral kernel. Love's cells are stiffer by {full:.3} (cell / wavelength)², in theory π²/6 = \
              {:.3}, because the pressure of a cell is uniform.\n\n\
              **Verdict: {}** (criterion: orders, those of the finest three grids, within {SLACK} of 2, 1 and 1). \
@@ -45,10 +46,11 @@ impl Convergence {
                         contact |\n|---|---|---|---|---|---|\n"
             .to_string();
         for kernel in [Periodic::Love, Periodic::Spectral] {
+            let [gap, area, stiffness] = COLUMNS.map(|(_, value, _)| self.order(kernel, value));
             if let Some(e) = self.of(kernel).last() {
                 let _ = writeln!(
                     text,
-                    "| {} | {} | {:.2e} | {:.2e} | {:.2e} | {:.1e} |",
+                    "| {} | {} | {:.2e} ({gap:.2}) | {:.2e} ({area:.2}) | {:.2e} ({stiffness:.2}) | {:.1e} |",
                     kernel.name(),
                     e.nodes,
                     e.gap,
@@ -57,12 +59,6 @@ impl Convergence {
                     e.full
                 );
             }
-            let [gap, area, stiffness] = COLUMNS.map(|(_, value, _)| self.order(kernel, value));
-            let _ = writeln!(
-                text,
-                "| {} | **order** | **{gap:.2}** | **{area:.2}** | **{stiffness:.2}** | |",
-                kernel.name()
-            );
         }
         text
     }

@@ -40,7 +40,6 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         ("sphere", 0.3, sphere()),
         ("rough", 0.0, rough(&[1])),
         ("rough", 0.45, rough(&[1])),
-        ("sphere", 0.45, sphere()),
     ] {
         let mut columns: [Vec<Vec<f64>>; 4] = Default::default();
         let mut coupling = 0.0;

@@ -30,7 +30,6 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
     let ridges = |along_x| vec![Pressed::ridges(5, along_x, nodes)];
     let made = [
         ("sphere", 0.0, sphere()),
-        ("sphere", 0.3, sphere()),
         ("sphere", 0.5, sphere()),
         ("rough, 3 seeds", 0.3, rough(&[1, 2, 4])),
         ("rough, 2 seeds", 0.5, rough(&[1, 2])),
