@@ -48,8 +48,8 @@ pub(crate) fn write(text: &mut String) -> Result<(), Error> {
     // Writing to a text cannot fail.
     let _ = write!(
         text,
-        "\n### What it costs\n\nA path of {} states, on one core: the bed and the joint are made in {:.0} ms; {AMPLITUDES} amplitudes, \
-         first loading and cycle, take {:.1} ms, the {elements} elements {:.1} ms, and a history of {STEPS} steps of both loads \
+        "\n### What it costs\n\nOn a path of {} states, one core: the joint {:.0} ms, {AMPLITUDES} amplitudes, first \
+         loading and cycle, {:.1} ms, the {elements} elements {:.1} ms, and a history of {STEPS} steps of both loads \
          {:.0} ms.\n",
         history.states().len(),
         1e3 * made,

@@ -26,18 +26,16 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         text,
         "\n### A rigid surface on one body\n\nThe same, but a rigid surface on one body: tractions move the surface \
          normally too, and pressing leaves tractions. Pressed with friction in {RAMP} steps, then sheared between −U \
-         and U. All over what the path gives: T and D of the first loading, and of the second cycle, at U = {} times \
-         κμδ, of several seeds from the least to the greatest.\n\n\
+         and U. T and D of the first loading, and of the second cycle, over what the path gives, at U = {} times κμδ; \
+         of several seeds least and greatest.\n\n\
          | surface | ν | β | T, first loading | D, first loading | T, second cycle | D, second cycle \
          |\n|---|---|---|---|---|---|---|\n",
         AMPLITUDES.map(|amplitude| amplitude.to_string()).join(", ")
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
-    let sphere = || vec![Pressed::sphere(nodes)];
     let rough = |seeds: &[u64]| seeds.iter().map(|&seed| Pressed::rough(seed, nodes)).collect();
     for (name, ratio, surfaces) in [
         ("rough, 4 seeds", 0.3, rough(&[1, 2, 3, 4])),
-        ("sphere", 0.3, sphere()),
         ("rough", 0.0, rough(&[1])),
         ("rough", 0.45, rough(&[1])),
     ] {
