@@ -33,7 +33,9 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         AMPLITUDES.map(|amplitude| amplitude.to_string()).join(", ")
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
-    let rough = |seeds: &[u64]| seeds.iter().map(|&seed| Pressed::rough(seed, nodes)).collect();
+    let rough = |seeds: &[u64]| -> Vec<_> {
+        seeds.iter().map(|&seed| Pressed::rough(seed, nodes)).collect()
+    };
     for (name, ratio, surfaces) in [
         ("rough, 4 seeds", 0.3, rough(&[1, 2, 3, 4])),
         ("rough", 0.0, rough(&[1])),
