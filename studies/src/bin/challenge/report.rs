@@ -58,8 +58,8 @@ impl Report {
              Study `challenge`. The geometry of M. H. Müser et al., *Meeting the contact-mechanics challenge*, Tribol. \
              Lett. 65 (2017) 118 (problem: arXiv 1512.02403): L = 100 µm, H = {HURST}, λᵣ = 20 µm, λₛ = 0.1 µm, rms \
              gradient {GRADIENT}, E\\* = 25 MPa, reference load 250 kPa, which is 0.01 E\\*h′; periodic, kernel \
-             2/(E\\*|q|). It is solved here **without adhesion**, with our own phases: the numbers of that paper, of \
-             adhesive contact, cannot be compared.\n\n\
+             2/(E\\*|q|). It is solved here **without adhesion** and with our own phases: the numbers of that paper \
+             cannot be compared.\n\n\
              ![Area over load against the width of the spectrum, distributions of gap and of pressure, and the mean \
              gap against load](images/challenge.png)"
         )
