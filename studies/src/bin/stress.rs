@@ -140,9 +140,9 @@ fn meshes(text: &mut String) -> Result<(), Error> {
         rows.iter_mut().zip(found).for_each(|(row, error)| row.errors.push(error.abs()));
     }
     text.push_str(
-        "\nErrors in units of p₀ and a, ν = 0.3, on cells of a part of the radius or half width a; pressures are averages \
-         over cells. The order is that from the first mesh to the last. A maximum is flat: its place follows from its \
-         value with the root of the error.\n\n| |",
+        "\nErrors in units of p₀ and a, ν = 0.3, on cells of a part of the radius or half width a; pressures are \
+         averages over cells. The order is that from the first mesh to the last. A maximum is flat: its place follows \
+         from its value with the root of the error.\n\n| |",
     );
     for cells in CELLS {
         let _ = write!(text, " a/{cells} |");
@@ -183,7 +183,8 @@ fn waves(text: &mut String) -> Result<(), Error> {
     let grid = Grid::square(n, n as f64)?;
     let wave = Subsurface::of(&Spectral::new(grid, 1.0)?, POISSON)?;
     let cell = Subsurface::new(grid, Boundary::Periodic, POISSON)?;
-    text.push_str("\nA wave of pressure against Westergaard's stresses, at a depth of three cells: greatest error of all components.\n\n| cells to a wave | waves of the grid | uniform cells |\n|---:|---:|---:|\n");
+    text.push_str("\nA wave of pressure against Westergaard's stresses, at a depth of three cells: greatest error of \
+    all components.\n\n| cells to a wave | waves of the grid | uniform cells |\n|---:|---:|---:|\n");
     for k in [1, 8] {
         let q = std::f64::consts::TAU * f64::from(k) / n as f64;
         let load = DMatrix::from_fn(n, n, |ix, _| (q * ix as f64).cos());

@@ -34,11 +34,12 @@ impl Report {
     pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "## Closed forms\n\n\
-             Study `closed_forms`: `FixedLoadSolver` to {} against `asperity::reference`, which shares no code with it, at equal load: the \
-             root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a target (of radii, for the \
-             circular punch) and four places of the apex between the nodes. Cells are counted over the radius of the \
-             contact, the shorter semi-axis or the half-width. Pressures are the greatest; those of the cone and the \
-             punch, which are infinite there, from 0.35 to 0.65 of the radius.\n\n\
+             Study `closed_forms`: `FixedLoadSolver` to {} against `asperity::reference`, which shares no code with \
+             it, at equal load: the root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a \
+             target (of radii, for the circular punch) and four places of the apex between the nodes. Cells are \
+             counted over the radius of the contact, the shorter semi-axis or the half-width. Pressures are the \
+             greatest; those of the cone and the punch, which are infinite there, from 0.35 to 0.65 of the \
+             radius.\n\n\
              **Criterion**, for every entry: the order fitted to the finest four meshes is at least the expected one \
              less {SLACK}, and on the finest mesh the error is at most {COEFFICIENT} × cells^(−expected order). \
              *Expected* is 2, but 1 for area, stiffness, and the pressure under a circular edge that cells do not \

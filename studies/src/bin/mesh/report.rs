@@ -23,11 +23,11 @@ impl Study {
              Study `mesh`: how much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend on the \
              mesh?\n\n\
              Self-affine surfaces (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel Love), {} seeds, the same on \
-             every mesh, {} loads, of which the first table shows every second; *cells* are those to the shortest wave, λₛ. \
-             *Corrected* is the area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and \
-             no contact (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). \
-             *Limit* is Richardson's extrapolation from the finest two meshes, 2 κ(Δ/2) − κ(Δ). Mean ± standard \
-             deviation of one surface. In the picture the numbers are p̄/(E\\* h′).\n\n\
+             every mesh, {} loads, of which the first table shows every second; *cells* are those to the shortest \
+             wave, λₛ. *Corrected* is the area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between \
+             contact and no contact (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 \
+             (2017) 161). *Limit* is Richardson's extrapolation from the finest two meshes, 2 κ(Δ/2) − κ(Δ). Mean ± \
+             standard deviation of one surface. In the picture the numbers are p̄/(E\\* h′).\n\n\
              ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the \
              width of the spectrum](images/mesh.png)",
             self.surfaces,

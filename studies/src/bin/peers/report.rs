@@ -72,7 +72,8 @@ impl<'a> Cell<'a> {
 }
 
 fn table(rows: &[Row], surfaces: &[&str]) -> String {
-    let mut text = "| program, half-space | entries | agree | pressure | mean gap | stiffness |\n|---|---|---|---|---|---|\n"
+    let mut text = "| program, half-space | entries | agree | pressure | mean gap | stiffness \
+    |\n|---|---|---|---|---|---|\n"
         .to_string();
     for (program, half_space) in COLUMNS {
         let cells = surfaces.iter().filter_map(|name| Cell::new(rows, name, (program, half_space)));
@@ -180,7 +181,8 @@ fn shortest_waves(waves: &[Wave]) -> String {
     let each = waves.iter().filter(wrong).map(|wave| {
         let k = wave.wave_number as f64;
         format!(
-            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of that, and ½ (1 + {k}/{}) = {:.6}",
+            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of that, and ½ (1 + {k}/{}) = \
+             {:.6}",
             wave.program,
             wave.nx,
             wave.ny,

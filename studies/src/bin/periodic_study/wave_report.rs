@@ -29,10 +29,9 @@ impl Convergence {
              crest, against the closed form of H. M. Westergaard (1939, `reference::Westergaard`):\n\n\
              ![Errors of mean gap, area and stiffness against the nodes along a wave](images/westergaard.png)\n\n{}\n\
              Greatest errors, in brackets the order at which they fall: of the mean gap at any event; of the area just \
-             before a row of nodes touches, and of the stiffness, between 10 and 90 % of the load of full contact. That \
-             load is exact to rounding, {exact:.0e}, \
-             for the spectral kernel. Love's cells are stiffer by {full:.3} (cell / wavelength)², in theory π²/6 = \
-             {:.3}, because the pressure of a cell is uniform.\n\n\
+             before a row of nodes touches, and of the stiffness, between 10 and 90 % of the load of full contact. \
+             That load is exact to rounding, {exact:.0e}, for the spectral kernel. Love's cells are stiffer by \
+             {full:.3} (cell / wavelength)², in theory π²/6 = {:.3}, because the pressure of a cell is uniform.\n\n\
              **Verdict: {}** (criterion: orders, those of the finest three grids, within {SLACK} of 2, 1 and 1). \
              `tests/closed_forms/westergaard.rs` holds the constants.",
             self.table(),

@@ -16,9 +16,9 @@ const SHARES: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 
 pub(crate) fn write(text: &mut String) -> Result<(), Error> {
     text.push_str(
-        "\n### How many nodes must slip\n\nOne surface (H = 0.8, roll-off at half the side, shortest wave a \
-         quarter of that) under one load: the dissipation of a cycle over that on the finest grid, and in brackets the nodes \
-         that slip.\n\n| T/μP |",
+        "\n### How many nodes must slip\n\nOne surface (H = 0.8, roll-off at half the side, shortest wave a quarter of \
+         that) under one load: the dissipation of a cycle over that on the finest grid, and in brackets the nodes that \
+         slip.\n\n| T/μP |",
     );
     let side = 1.0;
     let shortest = side / 32.0 * 4.0;

@@ -14,9 +14,10 @@ const SHARES: [f64; 3] = [0.1, 0.25, 0.9];
 
 pub(crate) fn write(text: &mut String) -> Result<(), Error> {
     text.push_str(
-        "\n### A sphere over meshes\n\nA sphere on a free half-space under the load at which Hertz' contact radius is 3/8 of the side. \
-         Errors of the displacement U and of the dissipation D of a cycle against Cattaneo–Mindlin and Mindlin–Deresiewicz \
-         (`reference::SphereSlip`). The dissipation needs a ring of slip some two cells wide.\n\n\
+        "\n### A sphere over meshes\n\nA sphere on a free half-space under the load at which Hertz' contact radius is \
+         3/8 of the side. Errors of the displacement U and of the dissipation D of a cycle against Cattaneo–Mindlin \
+         and Mindlin–Deresiewicz (`reference::SphereSlip`). The dissipation needs a ring of slip some two cells \
+         wide.\n\n\
          | nodes | T/μP | error of U | error of D | cells across the ring |\n|---|---|---|---|---|\n",
     );
     let surface = Paraboloid::new(RADIUS)?;

@@ -19,8 +19,9 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         text,
         "\n### Bodies alike, without the assumption of one direction\n\nSurfaces of {SIDE} × {SIDE} nodes, of which \
          {nodes} are in contact, μ = {FRICTION}, sheared once by an incremental solution of Coulomb's law on all \
-         nodes, with tractions along both directions and influences of Cerruti's half-space. T and D over what the path \
-         gives, at displacements U over κμδ, of several seeds least and greatest; *across* is Σ|q_y|/Σ|q_x| at 0.6.\n\n\
+         nodes, with tractions along both directions and influences of Cerruti's half-space. T and D over what the \
+         path gives, at displacements U over κμδ, of several seeds least and greatest; *across* is Σ|q_y|/Σ|q_x| at \
+         0.6.\n\n\
          | surface | ν | T at U = 0.03, 0.1, 0.3, 0.6, 0.9 | D | across |\n|---|---|---|---|---|\n"
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
