@@ -45,9 +45,10 @@ fn run(options: &Options) -> Result<(), Failure> {
     let mut text = String::from("## Stress below the surface\n\nStudy `stress`.\n");
     meshes(&mut text).map_err(failed)?;
     waves(&mut text).map_err(failed)?;
-    times(options.nodes, &mut text).map_err(failed)?;
     let section = Section { study: "stress", text: &text, pictures: &[] };
-    section.show(options.report.as_deref())
+    section.show(options.report.as_deref())?;
+    println!("{}", times(options.nodes).map_err(failed)?);
+    Ok(())
 }
 
 /// √(1 − x²) over a cell about x.
@@ -217,7 +218,7 @@ fn waves(text: &mut String) -> Result<(), Error> {
 const DEPTHS: [f64; 5] = [0.1, 1.0, 3.0, 10.0, 50.0];
 
 /// What a depth takes, in convolutions of displacements on the same grid.
-fn times(n: usize, text: &mut String) -> Result<(), Error> {
+fn times(n: usize) -> Result<String, Error> {
     let grid = Grid::square(n, n as f64)?;
     let pressure = DMatrix::from_fn(n, n, |ix, iy| {
         let is_in = (ix / 7 + iy / 5) % 3 == 0;
@@ -247,13 +248,11 @@ fn times(n: usize, text: &mut String) -> Result<(), Error> {
             taken.push(format!("{:.0}", time / unit));
         }
     }
-    let _ = writeln!(
-        text,
-        "\nThe time of one depth, all components and measures, in convolutions of displacements on the same {n} × {n} \
+    Ok(format!(
+        "The time of one depth, all components and measures, in convolutions of displacements on the same {n} × {n} \
          nodes, {} cells deep: {} on a free grid, {} on a periodic one.",
         DEPTHS.map(|depth| depth.to_string()).join(", "),
         taken[0].join(", "),
         taken[1].join(", "),
-    );
-    Ok(())
+    ))
 }
