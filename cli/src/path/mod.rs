@@ -26,6 +26,7 @@ mod parts;
 mod progress;
 mod roughness;
 mod sheet;
+mod shift;
 mod source;
 mod summary;
 mod table;

@@ -11,7 +11,7 @@ use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 use super::fields::Format;
 use super::joint::Joint;
 use super::roughness::Roughness;
-use super::source::Shift;
+use super::shift::Shift;
 use super::updater::{Updater, no_room};
 use crate::adhesion::Sticking;
 use crate::at::At;

@@ -11,6 +11,7 @@ use md5::{Digest, Md5};
 use serde_json::{Value, json};
 
 use super::options::Options;
+use super::shift::Shift;
 
 /// A surface, its name, and what it is from.
 pub(super) type Made = (Topography, String, Value);
@@ -66,21 +67,6 @@ pub(super) fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
     source["against_turned"] = json!(options.against_turned);
     source["against_shift"] = json!(options.against_shift.map(|Shift(ix, iy)| [ix, iy]));
     Ok((both, name, source))
-}
-
-/// Nodes along x and y.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Shift(isize, isize);
-
-impl Shift {
-    /// Two integers.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let (ix, iy) = text.split_once(',').ok_or("a shift is IX,IY: nodes along x and y")?;
-        let node = |text: &str| {
-            text.trim().parse().map_err(|_| format!("'{text}' is no whole number of nodes"))
-        };
-        Ok(Self(node(ix)?, node(iy)?))
-    }
 }
 
 /// A surface moved as asked, along directions in which it repeats.
