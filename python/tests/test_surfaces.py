@@ -33,6 +33,11 @@ OPEN: dict[str, dict[str, object]] = {
 
 def expected(name: str) -> NDArray[np.float64]:
     z = NANOMETRES * 1e-9
+    if name.startswith("profile"):
+        # The first row, the third point of which is missing but in texts that have no sign for that.
+        z = z[:1]
+        if not name.endswith((".prf", ".smd")):
+            z[0, 2] = np.nan
     z += {"plain_i32_offset.sur": 500e-9, "missing_u32.vk4": 300e-9, "missing_u32.vk6": 300e-9}.get(name, 0.0)
     if name.startswith(("missing", "masked")):
         z[1, 2] = z[4, 6] = np.nan
@@ -44,12 +49,13 @@ def expected(name: str) -> NDArray[np.float64]:
 def test_every_format(name: str) -> None:
     options = dict(OPEN.get(Path(name).suffix, {}))
     surface = asp.read(FILES / name, **options)
-    assert surface.shape == (5, 7)
-    assert surface.missing == (2 if name.startswith(("missing", "masked")) else 0)
+    heights = expected(name)
+    assert surface.shape == heights.shape
+    assert surface.missing == np.isnan(heights).sum()
     # Seven digits in texts, float32 in .gsf and .al3d: of a height below 0.8 um.
-    np.testing.assert_allclose(surface.z, expected(name), rtol=0, atol=1e-13)
-    # Seven digits in texts as well.
-    assert surface.size == pytest.approx((14e-6, 15e-6), rel=1e-6)
+    np.testing.assert_allclose(surface.z, heights, rtol=0, atol=1e-13)
+    # Seven digits in texts as well. A profile is as wide as its steps.
+    assert surface.size == pytest.approx((14e-6, 2e-6 if len(heights) == 1 else 15e-6), rel=1e-6)
     from_bytes = asp.read((FILES / name).read_bytes(), name=name, **options)
     from_object = asp.read(io.BytesIO((FILES / name).read_bytes()), name=name, **options)
     with (FILES / name).open("rb") as file:
