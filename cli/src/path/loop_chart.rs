@@ -3,9 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use asperity::contact::ContactState;
-use asperity_cli::axis::Axis;
-use asperity_cli::chart::{BLUE, ORANGE};
-use asperity_cli::half_space::is_of_mean_planes;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel::{Area, Drawn};
@@ -13,9 +10,9 @@ use plotters::prelude::*;
 
 use super::job::Job;
 use super::sheet;
+use super::there_and_back::{self, approach};
 
-/// A quantity of a state: its name, its unit, and what it is.
-type Quantity = (&'static str, &'static str, fn(&ContactState) -> f64);
+type Quantity = there_and_back::Quantity<ContactState>;
 
 const LOAD: Quantity = ("load W", "N", |s| s.load);
 const AREA: Quantity = ("contact area A", "m²", |s| s.contact_area);
@@ -44,36 +41,9 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, branches: &Branches) -
         quantity(job.heights().rms_height(), "m", 4)
     );
     sheet::title(area, &title)?;
-    let name = match is_of_mean_planes(job.periodic()) {
-        false => "approach δ",
-        true => "approach of the mean planes",
-    };
-    let approach: Quantity = (name, "m", |s| s.approach);
+    let approach = approach(job, |s: &ContactState| s.approach);
     let pairs = [(approach, LOAD), (LOAD, AREA), (LOAD, MEAN_GAP), (LOAD, INTERFACIAL)];
-    for (place, (x, y)) in (0_i32..).zip(pairs) {
-        let panel = sheet::panel(place);
-        let (horizontal, vertical) = (axis(x, branches), axis(y, branches));
-        panel.rule(area, &horizontal, &vertical)?;
-        let curves =
-            [(&branches.loading, BLUE, "pressed on"), (&branches.unloading, ORANGE, "unloaded")];
-        for (states, colour, _) in curves {
-            let points = states.iter().map(|state| ((x.2)(state), (y.2)(state)));
-            panel.curve(area, (&horizontal, &vertical), points, colour)?;
-        }
-        // Load grows with the approach: that corner is free.
-        if place == 0 {
-            sheet::legend(area, &panel, curves.map(|(_, colour, name)| (colour, name)))?;
-        }
-        panel.frame(area, &horizontal, &vertical)?;
-    }
-    Ok(())
-}
-
-fn axis((name, unit, quantity): Quantity, branches: &Branches) -> Axis {
-    let states = || branches.loading.iter().chain(&branches.unloading);
-    let values = || states().map(quantity).filter(|value| value.is_finite());
-    let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
-    // A mean gap that is to be zero may be off by rounding.
-    let low = if low < -1e-6 * high { low } else { 0.0 };
-    Axis::linear(name, unit, low, high).with_room(if low < 0.0 { 0.05 } else { 0.0 }, 0.06)
+    let ways = [(&branches.loading[..], "pressed on"), (&branches.unloading, "unloaded")];
+    // Load grows with the approach: that corner is free.
+    there_and_back::panels(area, pairs, ways, 0)
 }

@@ -30,6 +30,7 @@ mod shift;
 mod source;
 mod summary;
 mod table;
+mod there_and_back;
 mod unloading;
 mod updater;
 

@@ -2,10 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::adhesion::{AdhesiveBranch, AdhesiveState};
-use asperity_cli::axis::Axis;
-use asperity_cli::chart::{BLUE, ORANGE};
-use asperity_cli::half_space::is_of_mean_planes;
+use asperity::adhesion::AdhesiveState;
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel::{Area, Drawn};
@@ -13,10 +10,10 @@ use plotters::prelude::*;
 
 use super::super::job::Job;
 use super::super::sheet;
+use super::super::there_and_back::{self, approach};
 use super::course::Followed;
 
-/// A quantity of a state: its name, its unit, and what it is.
-type Quantity = (&'static str, &'static str, fn(&AdhesiveState) -> f64);
+type Quantity = there_and_back::Quantity<AdhesiveState>;
 
 const LOAD: Quantity = ("load W", "N", |s| s.contact.load);
 const AREA: Quantity = ("contact area A", "m²", |s| s.contact.contact_area);
@@ -41,34 +38,9 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, followed: &Followed) -
         quantity(job.heights().rms_height(), "m", 4)
     );
     sheet::title(area, &title)?;
-    let name = match is_of_mean_planes(job.periodic()) {
-        false => "approach δ",
-        true => "approach of the mean planes",
-    };
-    let approach: Quantity = (name, "m", |s| s.contact.approach);
+    let approach = approach(job, |s: &AdhesiveState| s.contact.approach);
     let pairs = [(approach, LOAD), (LOAD, AREA), (LOAD, MEAN_GAP), (approach, LOST)];
-    for (place, (x, y)) in (0_i32..).zip(pairs) {
-        let panel = sheet::panel(place);
-        let (horizontal, vertical) = (axis(x, &followed.states), axis(y, &followed.states));
-        panel.rule(area, &horizontal, &vertical)?;
-        let curves: [(&AdhesiveBranch, _, _); 2] =
-            [(&loading, BLUE, "pressed on"), (&unloading, ORANGE, "pulled off")];
-        let curves = curves.iter().filter(|(branch, ..)| !branch.states().is_empty());
-        for (branch, colour, _) in curves.clone() {
-            let points = branch.states().iter().map(|state| ((x.2)(state), (y.2)(state)));
-            panel.curve(area, (&horizontal, &vertical), points, *colour)?;
-        }
-        // Contact grows with the load: that corner is free.
-        if place == 1 {
-            sheet::legend(area, &panel, curves.map(|(_, colour, name)| (*colour, *name)))?;
-        }
-        panel.frame(area, &horizontal, &vertical)?;
-    }
-    area.present()
-}
-
-fn axis((name, unit, quantity): Quantity, states: &[AdhesiveState]) -> Axis {
-    let values = || states.iter().map(quantity).filter(|value| value.is_finite());
-    let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
-    Axis::linear(name, unit, low, high).with_room(if low < 0.0 { 0.05 } else { 0.0 }, 0.06)
+    let ways = [(loading.states(), "pressed on"), (unloading.states(), "pulled off")];
+    // Contact grows with the load: that corner is free.
+    there_and_back::panels(area, pairs, ways, 1)
 }
