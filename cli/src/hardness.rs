@@ -17,7 +17,7 @@ pub(crate) struct Hardness {
     #[arg(long, value_name = "PA|HB|HV|HRC", allow_negative_numbers = true, value_parser = values::hardness)]
     hardness: Option<f64>,
 
-    /// The same with a typical hardness of the --material, of the softer one of two
+    /// Cells yield at a typical hardness of the --material, of the softer one of two: --hardness without a number
     #[arg(long = "yield", conflicts_with = "hardness", help_heading = "Bodies")]
     typical: bool,
 }

@@ -165,6 +165,25 @@ mod tests {
         Arguments::command().debug_assert();
     }
 
+    /// A heading stands above all options behind it that name no other. What is asked for most stands above all headings.
+    #[test]
+    fn main_options_are_under_no_heading() {
+        let arguments = Arguments::command();
+        for (command, options) in [
+            ("path", &["surface", "material", "periodic", "at", "mean-pressure", "report", "out"][..]),
+            ("load", &["surface", "material", "periodic", "at", "load", "mean-pressure", "out"]),
+        ] {
+            let command = arguments.find_subcommand(command);
+            let of = |option| {
+                command?.get_arguments().find(|arg| arg.get_long() == Some(option))?.get_help_heading()
+            };
+            for option in options {
+                assert_eq!(of(option), None, "{option}");
+            }
+            assert_eq!(of("resistivity"), Some("Joint"));
+        }
+    }
+
     #[test]
     fn the_path_needs_no_options() {
         assert!(path::Options::try_parse_from(["asperity path"]).is_ok());

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use clap::ValueEnum;
 
-use crate::number::{area_unit, prefixed};
+use crate::number::{area_unit, is_power_of_length, prefixed};
 
 /// A system of units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -63,10 +63,7 @@ fn shown(units: Units, si_unit: &str, greatest: f64) -> (f64, String) {
             let (unit, name) = area_unit(greatest);
             (unit, name.to_string())
         }
-        // Powers of a unit have no prefix that is easily read.
-        _ if ["m²", "m³", "m⁴"].iter().any(|power| si_unit.starts_with(power)) => {
-            (1.0, si_unit.to_string())
-        }
+        _ if is_power_of_length(si_unit) => (1.0, si_unit.to_string()),
         _ => prefixed(si_unit, greatest),
     }
 }

@@ -39,6 +39,28 @@ fn with_ball(name: &str) -> Result<Scratch, Box<dyn Error>> {
 
 const BALL: &str = "--surface ball.npy --side 1e-3";
 
+/// Under 5 N the contact of Hertz has a radius of 1.8 cells, under 2 kN of 13. What a path and single loads say of a
+/// state that is asked for is the same, and nobody else hears of it.
+#[test]
+fn what_is_wrong_with_a_state_in_between_is_said_where_it_is_asked_for() -> Done {
+    let folder = with_ball("between")?;
+    let folder = &folder.0;
+    let few = "at 5 N: the contact is not resolved";
+    for (command, says) in [
+        ("path --at 5N,2kN", true),
+        ("path --max-load 2kN", false),
+        ("load --at 5N,2kN", true),
+    ] {
+        let line = format!("{command} {BALL} --material 210e9,0.3");
+        assert_eq!(words(folder, &line)?.contains(few), says, "{command}");
+        assert_eq!(words(folder, &format!("{line} --quiet"))?.contains(few), says, "{command}");
+        assert!(!words(folder, &line)?.contains("at 2 kN: the contact is not"), "{command}");
+    }
+    let line = format!("path --at 5N,2kN {BALL} --material 210e9,0.3");
+    assert!(warns(&object(folder, &line)?, few));
+    Ok(())
+}
+
 /// At 8 kN the contact of Hertz has a radius of 0.64 mm, where the surface ends at 0.5 mm; at 2 kN of 0.40 mm.
 #[test]
 fn peaks_of_the_border_are_said_everywhere() -> Done {

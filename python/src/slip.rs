@@ -120,7 +120,7 @@ fn warnings(
     if let Some(beta) = friction.dundurs_beta().filter(|_| friction.is_coupled()) {
         warnings.push(format!(
             "Dundurs' beta is {beta:.3}: tangential tractions move these surfaces normally too, which is left out. At 0.29 the \
-             tangential load of a first loading was up to 7 % less than here, steady cycles dissipated 2 to 10 % more (small ones \
+             tangential load of a first loading was up to 6 % less than here, steady cycles dissipated 2 to 10 % more (small ones \
              9 % less to 29 % more), and the first loading several times a quarter of the dissipation of a cycle"
         ));
     }

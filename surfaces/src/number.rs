@@ -51,10 +51,15 @@ fn superscript(number: &str) -> String {
 pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     // Rounded before the prefix is chosen: 999.9996 of something are 1 thousand.
     let rounded = round(value, digits);
-    match prefix(rounded) {
+    match prefix(rounded).filter(|_| !is_power_of_length(unit)) {
         Some((scale, prefix)) => format!("{} {prefix}{unit}", plain(rounded / scale, digits)),
         None => format!("{} {unit}", short(rounded, digits)),
     }
+}
+
+/// Whether a unit is one of area, volume or flow, which takes no prefix: a fm³ would be (fm)³.
+pub fn is_power_of_length(unit: &str) -> bool {
+    ["m²", "m³", "m⁴"].iter().any(|power| unit.starts_with(power))
 }
 
 /// So many things, by the name of one: `1 state`, `2 states`.
@@ -198,6 +203,9 @@ mod tests {
         ] {
             assert_eq!(quantity(value, "Pa", 4), text);
         }
+        // A prefix would be raised to the same power.
+        assert_eq!(quantity(4.2281e-15, "m³", 4), "4.228 × 10⁻¹⁵ m³");
+        assert_eq!(quantity(2e3, "m³/s", 4), "2 × 10³ m³/s");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::Solver;
 use super::job::Job;
 use super::moments;
-use super::table::{corrected_areas, reason, verify, warnings};
+use super::table::{all_warnings, corrected_areas, reason, verify};
 use crate::conduction::{Named, conductances};
 
 /// Prints the end of the path as one line, with the states that were asked for, and checks it as the table does.
@@ -37,7 +37,7 @@ pub(super) fn print(
     object.insert("states".to_string(), json!(states.len()));
     object.insert("ended_by".to_string(), json!(solver.end().map(reason)));
     object.insert("seconds".to_string(), json!(seconds));
-    object.insert("warnings".to_string(), json!(warnings(job, solver)?));
+    object.insert("warnings".to_string(), json!(all_warnings(job, solver, states)?));
     if !job.at().is_empty() {
         let mut asked = Vec::new();
         for (at, state) in moments::reached(job, states).0 {

@@ -1,5 +1,6 @@
 //! The short table, and how exact the last state is.
 
+use asperity::contact::ContactFields;
 use asperity::loading::{History, LoadingEnd};
 use asperity::patches::ContactEdge;
 use asperity::{Certificate, Error, LoadingState, Warning};
@@ -29,7 +30,7 @@ pub(super) fn print(
         return Ok(());
     };
     if speech::is_quiet() {
-        warnings(job, solver)?.iter().for_each(speech::warn);
+        all_warnings(job, solver, states)?.iter().for_each(speech::warn);
         return verify(solver);
     }
     say!("{} in {seconds:.2} s", counted(states.len(), "state"));
@@ -54,7 +55,7 @@ pub(super) fn print(
     let resolution = Resolution::of(&solver.contact_map(), &job.grid(), job.boundary())
         .map_err(|error| Failure::new("cannot find the patches of the last state", error))?;
     say!("mesh: at the last state {resolution}");
-    warnings(job, solver)?.iter().for_each(speech::warn);
+    all_warnings(job, solver, states)?.iter().for_each(speech::warn);
     let certificate = solver
         .certificate()
         .map_err(|error| Failure::new("cannot compute the residuals of the last state", error))?;
@@ -131,20 +132,43 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
     }
 }
 
+/// What looks wrong with the states that are asked for, and with the end of the path.
+pub(super) fn all_warnings(
+    job: &Job,
+    solver: &mut Solver,
+    states: &[LoadingState],
+) -> Result<Vec<String>, Failure> {
+    let mut all = Vec::new();
+    let (asked, _) = moments::reached(job, states);
+    for (at, state) in asked.into_iter().filter(|(_, state)| Some(state) != states.last()) {
+        let failed = |error| Failure::new(format!("cannot compute the pressure at {at}"), error);
+        let fields = solver.fields_at(&state).map_err(failed)?;
+        let found = of_fields(job, &fields).map_err(failed)?;
+        all.extend(found.into_iter().map(|warning| format!("at {at}: {warning}")));
+    }
+    all.extend(warnings(job, solver)?);
+    Ok(all)
+}
+
+/// What looks wrong with a state.
+fn of_fields(job: &Job, fields: &ContactFields) -> Result<Vec<String>, Error> {
+    let on = (&job.grid(), job.boundary());
+    let of_contact = Warning::of_contact(&fields.pressure, &fields.contact_map, on)?;
+    // With a hardness it is what was asked for.
+    let high = job.bodies().warning_of(fields.pressure.max()).filter(|_| !job.has_hardness());
+    let found = high.into_iter().chain(of_contact);
+    Ok(found.map(|warning| crate::advice::told(&warning)).collect())
+}
+
 /// What looks wrong with the end of the path.
 pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let failed = |error| Failure::new("cannot compute the pressure of the last state", error);
-    let pressure = solver.fields().map_err(failed)?.pressure;
-    let on = (&job.grid(), job.boundary());
-    let of_contact = Warning::of_contact(&pressure, &solver.contact_map(), on).map_err(failed)?;
-    // With a hardness it is what was asked for.
-    let high = job.bodies().warning_of(pressure.max()).filter(|_| !job.has_hardness());
-    let found = high.into_iter().chain(of_contact);
-    let mut warnings: Vec<String> = found.map(|warning| crate::advice::told(&warning)).collect();
+    let fields = solver.fields().map_err(failed)?;
+    let mut warnings = of_fields(job, &fields).map_err(failed)?;
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
         // A flat surface, whose nodes all touch before there is a load, says nothing of units.
-        && pressure.max() > 0.0
+        && fields.pressure.max() > 0.0
     {
         warnings.push(format!(
             "the path ended before {target}. If you did not expect this, check the units: E* is {} Pa",

@@ -39,7 +39,7 @@ use crate::{Error, Grid};
 /// it is a sum over all waves that look alike on the grid, for thin layers with the shortest of them replaced by
 /// integrals over cells.
 ///
-/// Coefficients err by some 10⁻¹³ of C(0, 0). What is left of a layer on a rigid base is a difference of the two parts:
+/// Coefficients err by some 10⁻¹⁴ of C(0, 0). What is left of a layer on a rigid base is a difference of the two parts:
 /// relative to what it answers to a wave q, the error is some 10⁻¹⁵ × 2 / (E₁\* q Ĉ(q)), for a thin incompressible
 /// layer 10⁻¹⁵ / (q h)³. Where q h is below 10⁻⁴ on the longest wave of the grid, use [`spectral`](Self::spectral),
 /// which takes no difference.

@@ -30,7 +30,7 @@ use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
 /// get large and reach the computation or storage limitation", as the paper has it).
 ///
 /// No factor is kept, and nothing else that grows faster than the grid: a path to full contact on 512 × 512
-/// nodes takes less than 0.4 GB instead of 275 GB.
+/// nodes takes 0.4 GB instead of 275 GB.
 ///
 /// A solution is exact to the [tolerance](Self::with_tolerance): gaps in contact are zero to 10⁻¹⁰ of the
 /// approach. It starts from the last one, and from what nodes that joined did to the contact near them. An exact

@@ -147,7 +147,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
             "**\"pi/16 percent\"** is the fraction π/16 = {:.1} %: {:.0} nodes of 256². Taken as a percentage it would be {:.0} \
              nodes, which do not take 20 minutes. [performance.md](../docs/performance.md#the-headline-case) has our time.",
             100.0 * share,
-            share * 65536.0,
+            (share * 65536.0).floor(),
             share / 100.0 * 65536.0
         ),
         "**Symbols.** E\\* = E/(1 − ν²); k = A E\\* √⟨|∇h|²⟩ / W. Both are hard to read in print.".to_string(),
