@@ -170,12 +170,18 @@ mod tests {
     fn main_options_are_under_no_heading() {
         let arguments = Arguments::command();
         for (command, options) in [
-            ("path", &["surface", "material", "periodic", "at", "mean-pressure", "report", "out"][..]),
+            (
+                "path",
+                &["surface", "material", "periodic", "at", "mean-pressure", "report", "out"][..],
+            ),
             ("load", &["surface", "material", "periodic", "at", "load", "mean-pressure", "out"]),
         ] {
             let command = arguments.find_subcommand(command);
             let of = |option| {
-                command?.get_arguments().find(|arg| arg.get_long() == Some(option))?.get_help_heading()
+                command?
+                    .get_arguments()
+                    .find(|arg| arg.get_long() == Some(option))?
+                    .get_help_heading()
             };
             for option in options {
                 assert_eq!(of(option), None, "{option}");

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use clap::ValueEnum;
 
-use crate::number::{area_unit, is_power_of_length, prefixed};
+use crate::number::{area_unit, is_power_of_length, plain, prefixed, quantity};
 
 /// A system of units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -55,6 +55,17 @@ pub fn of(si_unit: &str, greatest: f64) -> (f64, String) {
     shown(chosen(), si_unit, greatest)
 }
 
+/// A time with up to four digits, from a quarter of an hour on in a unit that the command line reads too.
+pub fn time(seconds: f64) -> String {
+    const DAY: f64 = 86_400.0;
+    const UNITS: [(f64, f64, &str); 3] =
+        [(DAY, DAY, "d"), (3600.0, 3600.0, "h"), (900.0, 60.0, "min")];
+    match UNITS.iter().find(|(least, ..)| (*least..1e6 * DAY).contains(&seconds)) {
+        Some((_, unit, name)) => format!("{} {name}", plain(seconds / unit, 4)),
+        None => quantity(seconds, "s", 4),
+    }
+}
+
 fn shown(units: Units, si_unit: &str, greatest: f64) -> (f64, String) {
     let known = MILLIMETRES.iter().find(|(name, ..)| *name == si_unit);
     match (units, known) {
@@ -89,6 +100,21 @@ mod tests {
                 assert!((unit / expected.0 - 1.0).abs() < 1e-12, "{si}: {unit:e}");
                 assert_eq!(name, expected.1);
             }
+        }
+    }
+    #[test]
+    fn long_times_are_told_in_days() {
+        for (seconds, text) in [
+            (0.0, "0 s"),
+            (2.5e-3, "2.5 ms"),
+            (899.0, "899 s"),
+            (1000.0, "16.67 min"),
+            (5400.0, "1.5 h"),
+            (31_536_000.0, "365 d"),
+            (1e9, "11574 d"),
+            (f64::INFINITY, "inf s"),
+        ] {
+            assert_eq!(time(seconds), text);
         }
     }
 }

@@ -9,6 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use asperity_cli::number::quantity;
 use common::{Scratch, asperity, said};
 use serde_json::Value;
 
@@ -96,6 +97,10 @@ fn answers_and_tables_agree() -> Done {
     let sum: f64 = stiffnesses.iter().zip(&slips).map(|(k, slip)| k * slip).sum();
     assert!((sum / number(&default, "sliding_load") - 1.0).abs() < 1e-10);
     assert!(slips.windows(2).all(|pair| pair[0] <= pair[1]));
+    // All of them hold before any slip.
+    let printed = run(folder, "slip path.npz --friction 0.5 --material rubber")?.stdout;
+    let stiffness = quantity(stiffnesses.iter().sum(), "N/m", 4);
+    assert!(String::from_utf8(printed)?.contains(&format!("before any slip {stiffness}\n")));
     assert_eq!(column(&seen.join("history.csv"), "dissipation")?.last(), Some(&lost));
     for picture in ["slip", "stick_map", "wear_map", "history"] {
         let bytes = fs::read(seen.join(picture).with_extension("png"))?;

@@ -46,11 +46,9 @@ fn what_is_wrong_with_a_state_in_between_is_said_where_it_is_asked_for() -> Done
     let folder = with_ball("between")?;
     let folder = &folder.0;
     let few = "at 5 N: the contact is not resolved";
-    for (command, says) in [
-        ("path --at 5N,2kN", true),
-        ("path --max-load 2kN", false),
-        ("load --at 5N,2kN", true),
-    ] {
+    for (command, says) in
+        [("path --at 5N,2kN", true), ("path --max-load 2kN", false), ("load --at 5N,2kN", true)]
+    {
         let line = format!("{command} {BALL} --material 210e9,0.3");
         assert_eq!(words(folder, &line)?.contains(few), says, "{command}");
         assert_eq!(words(folder, &format!("{line} --quiet"))?.contains(few), says, "{command}");

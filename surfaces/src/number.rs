@@ -131,8 +131,8 @@ fn decimals(value: f64, digits: usize) -> usize {
     (digits as f64 - 1.0 - place).max(0.0) as usize
 }
 
-/// Without zeros behind the point.
-fn plain(value: f64, digits: usize) -> String {
+/// A number with up to so many significant digits, without zeros behind the point.
+pub fn plain(value: f64, digits: usize) -> String {
     let text = format!("{value:.*}", decimals(value, digits));
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_string(),

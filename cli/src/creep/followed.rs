@@ -8,8 +8,9 @@ use asperity::leak::{Leak, Seal};
 use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
 use asperity::{BedError, ContactEvent, CreepError, Error, LoadingPath};
-use asperity_cli::number::{at_least, quantity};
+use asperity_cli::number::at_least;
 use asperity_cli::outcome::Failure;
+use asperity_cli::units;
 
 use super::course::Task;
 use crate::passages::{self, Passage};
@@ -166,8 +167,8 @@ impl<'a> Followed<'a> {
             0.0 => "the path is not enough for this history, from its beginning".to_string(),
             until => format!(
                 "the path is enough until t = {}, and not to {}",
-                quantity(until, "s", 4),
-                quantity(task.end, "s", 4)
+                units::time(until),
+                units::time(task.end)
             ),
         };
         Err(Failure::request(reached).with_advice(&format!(

@@ -13,7 +13,7 @@ use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, Series, Style};
 use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::{self, Failure};
-use asperity_cli::say;
+use asperity_cli::{say, units};
 use serde_json::{Value, json};
 
 use super::followed::Followed;
@@ -37,7 +37,7 @@ impl Leaks {
             return Err(Failure::request(format!(
                 "contact recedes from t = {} on, and the gap is then that of no state of the path: the leak over \
                  time is that of growing contact; give a --time before",
-                quantity(time, "s", 4)
+                units::time(time)
             )));
         }
         let failed = |error| Failure::new("cannot compute the leak over time", error);
@@ -62,9 +62,9 @@ impl Leaks {
         say!(
             "leak       {} m³/s at t = {}, {} m³/s at {}, under {} of a fluid of {}",
             scientific(*most, 4),
-            quantity(first.time, "s", 4),
+            units::time(first.time),
             scientific(*least, 4),
-            quantity(last.time, "s", 4),
+            units::time(last.time),
             quantity(self.seal.pressure_drop(), "Pa", 4),
             quantity(self.seal.viscosity(), "Pa s", 4)
         );

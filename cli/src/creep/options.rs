@@ -25,8 +25,8 @@ pub(crate) struct Options {
     #[arg(value_name = "FILE.npz")]
     pub(super) record: PathBuf,
 
-    /// Prony series: for each term a relaxation time in seconds and the part of E0 that relaxes with it; if the parts
-    /// add up to 1, the body flows
+    /// Prony series: for each term a relaxation time, in seconds or as 1d, and the part of E0 that relaxes with it; if
+    /// the parts add up to 1, the body flows
     #[arg(long, value_name = "TAU,G", num_args = 1.., required = true, value_parser = term)]
     pub(super) prony: Vec<(f64, f64)>,
 

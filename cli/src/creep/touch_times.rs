@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use asperity::ContactEvent;
 use asperity::record::LoadingRecord;
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::number::{counted, quantity};
+use asperity_cli::number::counted;
 use asperity_cli::outcome::Failure;
+use asperity_cli::units;
 use nalgebra::DMatrix;
 
 use super::followed::Followed;
@@ -36,7 +37,7 @@ pub(super) fn draw(
     let caption = format!(
         "{touched} of {} touched, the last after {}",
         counted(grid.nodes(), "node"),
-        quantity(last, "s", 4)
+        units::time(last)
     );
     let map = FieldMap {
         grid: &grid,

@@ -3,7 +3,7 @@
 use asperity::creep::{ControlHistory, CreepState};
 use asperity::{CreepError, Error};
 use asperity_cli::number::{quantity, significant};
-use asperity_cli::{say, speech};
+use asperity_cli::{say, speech, units};
 
 use super::Options;
 use super::course::Task;
@@ -27,7 +27,7 @@ pub(super) fn print(
     table(&followed.states);
     for passage in passages {
         match passage.at {
-            Some(time) => say!("{:18} from t = {} on", passage.name, quantity(time, "s", 4)),
+            Some(time) => say!("{:18} from t = {} on", passage.name, units::time(time)),
             None => say!("{:18} not in this time", passage.name),
         }
     }
@@ -40,7 +40,7 @@ pub(super) fn print(
 }
 
 fn bodies(task: &Task) {
-    let term = |time: f64, share: f64| format!("{share} in {}", quantity(time, "s", 4));
+    let term = |time: f64, share: f64| format!("{share} in {}", units::time(time));
     let terms = task.prony.relaxation_terms().iter().map(|t| term(t.time, t.amount));
     let terms: Vec<String> = terms.collect();
     let left = match task.prony.equilibrium_modulus() {
@@ -55,10 +55,10 @@ fn bodies(task: &Task) {
 
 fn course(options: &Options, task: &Task) {
     let put_on = match options.ramp {
-        Some(duration) => format!("within {}", quantity(duration, "s", 4)),
+        Some(duration) => format!("within {}", units::time(duration)),
         None => "at once".to_string(),
     };
-    let end = quantity(task.end, "s", 4);
+    let end = units::time(task.end);
     match (options.load, options.approach, &options.history) {
         (Some(load), _, _) => {
             say!(
@@ -87,7 +87,7 @@ fn method(followed: &Followed) {
         (Method::Steps { count, halvings, error }, Some(recedes)) => {
             say!(
                 "contact    recedes from t = {} on: the bed of the path is stepped in time",
-                quantity(recedes, "s", 4)
+                units::time(recedes)
             );
             let halved = match halvings {
                 0 => String::new(),

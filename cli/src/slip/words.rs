@@ -1,6 +1,7 @@
 //! What is printed.
 
 use asperity::kernel::KernelOrigin;
+use asperity::slip::SlipState;
 use asperity_cli::number::{area, counted, quantity};
 use asperity_cli::say;
 use serde_json::{Value, json};
@@ -77,7 +78,13 @@ pub(super) fn print(joint: &Joint, sheared: Option<&Sheared>) {
         quantity(state.displacement, "m", 4),
         quantity(state.interfacial_displacement, "m", 4)
     );
-    say!("  tangent stiffness    {}", quantity(state.tangential_stiffness, "N/m", 4));
+    let stiffness = |state: &SlipState| quantity(state.tangential_stiffness, "N/m", 4);
+    let sticking = joint.loading.first().map(stiffness);
+    say!(
+        "  tangent stiffness    {}; before any slip {}",
+        stiffness(state),
+        sticking.unwrap_or_default()
+    );
     say!(
         "  sticks               {}, {}",
         counted(state.stick_nodes, "node"),
