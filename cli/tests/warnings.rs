@@ -52,7 +52,10 @@ fn what_is_wrong_with_a_state_in_between_is_said_where_it_is_asked_for() -> Done
         let line = format!("{command} {BALL} --material 210e9,0.3");
         assert_eq!(words(folder, &line)?.contains(few), says, "{command}");
         assert_eq!(words(folder, &format!("{line} --quiet"))?.contains(few), says, "{command}");
-        assert!(!words(folder, &line)?.contains("at 2 kN: the contact is not"), "{command}");
+        let last = words(folder, &line)?;
+        assert!(!last.contains("at 2 kN: the contact is not"), "{last}");
+        assert_eq!(last.contains("at 2 kN: the greatest pressure is"), says, "{last}");
+        assert!(last.contains("the greatest pressure is"), "{last}");
     }
     let line = format!("path --at 5N,2kN {BALL} --material 210e9,0.3");
     assert!(warns(&object(folder, &line)?, few));

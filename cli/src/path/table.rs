@@ -139,14 +139,22 @@ pub(super) fn all_warnings(
     states: &[LoadingState],
 ) -> Result<Vec<String>, Failure> {
     let mut all = Vec::new();
-    let (asked, _) = moments::reached(job, states);
-    for (at, state) in asked.into_iter().filter(|(_, state)| Some(state) != states.last()) {
+    let mut end = None;
+    for (at, state) in moments::reached(job, states).0 {
+        if Some(&state) == states.last() {
+            end = Some(at);
+            continue;
+        }
         let failed = |error| Failure::new(format!("cannot compute the pressure at {at}"), error);
         let fields = solver.fields_at(&state).map_err(failed)?;
         let found = of_fields(job, &fields).map_err(failed)?;
         all.extend(found.into_iter().map(|warning| format!("at {at}: {warning}")));
     }
-    all.extend(warnings(job, solver)?);
+    let last = warnings(job, solver)?.into_iter();
+    all.extend(last.map(|warning| match end {
+        Some(at) => format!("at {at}: {warning}"),
+        None => warning,
+    }));
     Ok(all)
 }
 
