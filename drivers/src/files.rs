@@ -8,7 +8,7 @@ macro_rules! file {
 }
 
 /// One file of each format and kind.
-pub(crate) const FILES: [&[u8]; 36] = [
+pub(crate) const FILES: [&[u8]; 37] = [
     file!("missing.npy"),
     file!("missing.gsf"),
     file!("masked.gwy"),
@@ -45,6 +45,7 @@ pub(crate) const FILES: [&[u8]; 36] = [
     file!("profile.smd"),
     file!("plain_i32.mnt"),
     file!("missing_i32.mnt"),
+    file!("plain_i32_large_sectors.mnt"),
 ];
 
 /// How files of each format begin.

@@ -41,9 +41,14 @@ pub(super) const MAX_GROWTH: usize = 256;
 pub(super) fn inflated(file: &[u8], name: &str) -> Result<Vec<u8>, Fault> {
     let mut zip = ZipArchive::new(Cursor::new(file)).map_err(incomplete)?;
     let is_it = |path: &str| path.rsplit(['/', '\\']).next() == Some(name);
-    let found = zip.file_names().filter_map(|path| Some(path.ok()?.to_string()));
-    let path = found.into_iter().find(|path| is_it(path));
-    let path = path.ok_or_else(|| fault!("the archive has no member '{name}'"))?;
+    let paths = zip.file_names().filter_map(|path| Some(path.ok()?.to_string()));
+    let mut paths = paths.filter(|path| is_it(path));
+    let path = paths.next().ok_or_else(|| fault!("the archive has no member '{name}'"))?;
+    let another = paths.next();
+    drop(paths);
+    if let Some(another) = another {
+        bail!("the archive has two members '{name}', at '{path}' and '{another}'");
+    }
     let most = file.len().saturating_mul(MAX_GROWTH);
     let mut bytes = Vec::new();
     let member = zip.by_name(&path).map_err(incomplete)?;

@@ -33,11 +33,16 @@ pub(super) fn stream(file: &[u8], name: &str) -> Result<Option<Vec<u8>>, Fault> 
     let mut found = None;
     for entry in directory.chunks_exact(ENTRY) {
         let mut bytes = Bytes::from(entry, 116)?;
-        let (first, length) = (bytes.u32()?, bytes.u32()? as usize);
+        // Half of it counts where sectors have 512 bytes: the other half may be anything.
+        let (first, length) = (bytes.u32()?, bytes.u64()?);
+        let length = if sector == 9 { length & u64::from(u32::MAX) } else { length };
         let is_named = entry.starts_with(&text) && entry[text.len()..].starts_with(&[0, 0]);
         match entry[66] {
             5 => container = Some(first),
-            2 if is_named => found = Some((first, length)),
+            2 if is_named => {
+                ensure!(found.is_none(), "there are several streams '{name}'");
+                found = Some((first, usize::try_from(length).unwrap_or(usize::MAX)));
+            }
             _ => {}
         }
     }
@@ -123,3 +128,6 @@ impl<'a> Sectors<'a> {
         Ok(bytes)
     }
 }
+
+#[cfg(test)]
+mod tests;

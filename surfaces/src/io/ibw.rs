@@ -3,20 +3,19 @@
 //! Sources: WaveMetrics' technical note 003, SurfaceTopography's `IBW.py`; a file of an instrument and one of Gwyddion.
 //!
 //! Version 5 has a header of 64 bytes, which gives the lengths of what follows the numbers, and one of 320 bytes with
-//! type, shape, steps and units of the wave. Layers, the third dimension, are maps, whose names are labels of that
-//! dimension. The unit of the wave is the metre even if some layers are phases: these are known by their names. The
-//! first row is the lowest.
+//! type, shape, steps and units of the wave; longer units follow the numbers. Layers, the third dimension, are maps,
+//! whose names are labels of that dimension. The unit of the wave is the metre even if some layers are phases: these
+//! are known by their names. The first row is the lowest. Earlier versions have one dimension, and shorter headers.
 
 use super::bytes::{Bytes, Order, latin1, shape};
 use super::fault::Fault;
 use super::number::Number;
 use super::raw::{Channel, Parsed};
 
-pub(super) const BEGINS: &[&[u8]] = &[b"\x05\x00", b"\x00\x05", b"\x02\x00", b"\x00\x02"];
-
-/// The headers of version 5.
+/// The headers of version 5, and those of each version together.
 const FIRST: usize = 64;
 const HEADERS: usize = FIRST + 320;
+const VERSIONS: [(u8, usize); 3] = [(2, 16 + 110), (3, 20 + 110), (5, HEADERS)];
 
 /// Places of fields in them.
 const LENGTHS: usize = 8;
@@ -26,7 +25,7 @@ const SHAPE: usize = FIRST + 68;
 const STEPS: usize = FIRST + 84;
 const UNITS: usize = FIRST + 148;
 
-/// Bytes of a label, and of a unit in the header.
+/// Bytes of a label, which is as long as a unit may be, and of a unit in the header.
 const LABEL: usize = 32;
 const UNIT: usize = 4;
 
@@ -48,8 +47,10 @@ const OTHERS: [(&str, &str); 9] = [
 
 /// Whether these are the headers of a wave: their sum in whole numbers of 16 bits is zero.
 pub(super) fn looks_like(file: &[u8]) -> bool {
-    let begins = BEGINS.iter().any(|begin| file.starts_with(begin));
-    begins && file.get(..HEADERS).is_some_and(|headers| checksum(headers, order(file)) == 0)
+    VERSIONS.into_iter().any(|(version, length)| {
+        (file.starts_with(&[version, 0]) || file.starts_with(&[0, version]))
+            && file.get(..length).is_some_and(|headers| checksum(headers, order(file)) == 0)
+    })
 }
 
 fn order(file: &[u8]) -> Order {
@@ -99,11 +100,6 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         let bytes = at(place)?.take(length)?;
         Ok::<_, Fault>(latin1(bytes.split(|byte| *byte == 0).next().unwrap_or_default()))
     };
-    let unit =
-        |place: usize| Ok::<_, Fault>(Some(text(place, UNIT)?).filter(|unit| !unit.is_empty()));
-    let (mut height_unit, x, y) = (unit(UNITS)?, unit(UNITS + UNIT)?, unit(UNITS + 2 * UNIT)?);
-    ensure!(x == y, at(UNITS), "x is in {x:?}, but y in {y:?}");
-
     let mut data = at(HEADERS)?;
     let layer = (nx * ny).saturating_mul(number.size());
     let all = data.elements(layers as usize, layer)?;
@@ -115,14 +111,19 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         behind = behind.saturating_add(length);
         Ok::<_, Fault>((place, length))
     };
-    let (_formula, _note, long_unit) = (part()?, part()?, part()?);
-    for _ in 0..6 {
+    let (_formula, _note) = (part()?, part()?);
+    let mut unit = |short: usize| {
+        let (place, length) = part()?;
+        ensure!(length <= LABEL, at(place), "a unit has {length} bytes, more than {LABEL}");
+        let unit = if length > 0 { text(place, length) } else { text(short, UNIT) }?;
+        Ok::<_, Fault>(Some(unit).filter(|unit| !unit.is_empty()))
+    };
+    let (height_unit, x, y) = (unit(UNITS)?, unit(UNITS + UNIT)?, unit(UNITS + 2 * UNIT)?);
+    ensure!(x == y, at(UNITS), "x is in {x:?}, but y in {y:?}");
+    for _ in 0..4 {
         part()?;
     }
     let (labels, length_of_labels) = part()?;
-    if long_unit.1 > 0 {
-        height_unit = Some(text(long_unit.0, long_unit.1)?);
-    }
     let has_labels = length_of_labels >= LABEL.saturating_mul(1 + layers as usize);
     let whole = text(NAME, LABEL)?;
     all.chunks_exact(layer)

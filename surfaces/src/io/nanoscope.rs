@@ -73,9 +73,21 @@ fn channel(file: &[u8], image: &Section, sections: &[Section]) -> Result<Channel
         name: name.as_deref().map(name_of).unwrap_or_default(),
         height_unit: unit,
         lateral_unit,
+        notes: unfinished(image, (nx, ny)).into_iter().collect(),
         ..Channel::in_metres((nx, ny), number.decode_all(data, |value| value * factor)?, cell)
     };
     Ok(channel.turned())
+}
+
+/// What there is to say of an image that was not scanned to its end.
+fn unfinished(image: &Section, (nx, ny): (usize, usize)) -> Option<String> {
+    let length = |key: &str| image.get(key)?.parse::<usize>().ok();
+    let x = length("Valid data len X").unwrap_or(nx);
+    let y = length("Valid data len Y").unwrap_or(ny);
+    let is_whole = (x, y) == (nx, ny);
+    (!is_whole).then(|| {
+        format!("{x} x {y} of the {nx} x {ny} nodes are valid, as the file says; all are read")
+    })
 }
 
 /// What all integers together are worth.

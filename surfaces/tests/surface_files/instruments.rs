@@ -101,6 +101,13 @@ fn scales_of_nanoscope_need_their_sensitivity() -> TestResult {
         matches!(&refused, Err(Error::File(FileError::NoUnit { found: Some(unit), .. })) if unit == "LSB")
     );
     assert_refused("plain_i16.spm", &[(b"\\*File list end", b"\\*File list and")], "no end");
+    // A scan that was stopped after three lines.
+    let stopped = edited(
+        "plain_i16.spm",
+        &[(b"\\Start context: OL\r\n\\Data", b"\\Valid data len Y: 3\r\n\\D1")],
+    );
+    let notes = read(&stopped)?.notes;
+    assert_eq!(notes, ["7 x 3 of the 7 x 5 nodes are valid, as the file says; all are read"]);
     // One number is the side of a square, and an aspect ratio makes the other.
     let square = edited(
         "plain_i16.spm",
@@ -152,18 +159,45 @@ fn waves_of_igor_are_checked() {
         (136, 0, "a profile is no surface"),
         (144, 2, "it has four dimensions"),
         (140, 257, "257 layers"),
-        (0, 2, "a wave of version 2"),
+        (0, 2, "a wave of version 2, which has one dimension"),
+        (0, 3, "a wave of version 3, which has one dimension"),
+        (20, 33, "a unit has 33 bytes"),
     ] {
         let mut file = bytes("missing_f32.ibw");
         file[place..place + 2].copy_from_slice(&u16::to_le_bytes(number));
-        // The sum of all numbers of the headers is zero.
-        file[2..4].fill(0);
-        let numbers = file[..384].chunks(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]));
-        let sum = numbers.fold(0, u16::wrapping_add);
-        file[2..4].copy_from_slice(&sum.wrapping_neg().to_le_bytes());
+        balance(&mut file, [384, 126, 130][if place == 0 { usize::from(number) - 1 } else { 0 }]);
         let error = read(&file).map_err(|error| error.to_string());
         assert!(error.as_ref().is_err_and(|error| error.contains(reason)), "{error:?}");
     }
+}
+
+/// Makes the sum of all numbers in the headers of a wave zero.
+fn balance(file: &mut [u8], headers: usize) {
+    file[2..4].fill(0);
+    let numbers = file[..headers].chunks(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]));
+    let sum = numbers.fold(0, u16::wrapping_add);
+    file[2..4].copy_from_slice(&sum.wrapping_neg().to_le_bytes());
+}
+
+/// Units of more than three letters lie behind the numbers, before the labels.
+#[test]
+fn long_units_of_waves_are_read() -> TestResult {
+    let plain = read(&bytes("missing_f32.ibw"))?;
+    let mut file = bytes("missing_f32.ibw");
+    // Behind headers, two layers of 35 numbers and the note.
+    let place = 384 + 2 * 35 * 4 + 34;
+    // Of the numbers, x and y: millimetres that the header calls metres.
+    file.splice(place..place, b"millimetremicrometremicrometre".iter().copied());
+    for field in [16, 20, 24] {
+        file[field..field + 4].copy_from_slice(&10_u32.to_le_bytes());
+    }
+    balance(&mut file, 384);
+    let long = read(&file)?;
+    let (dx, dy) = plain.cell.ok_or("no cell")?;
+    assert_eq!(long.cell, Some((dx * 1e-6, dy * 1e-6)));
+    assert_eq!(long.heights[(0, 0)], plain.heights[(0, 0)] * 1e-3);
+    assert_eq!((long.title, long.channels), (plain.title, plain.channels));
+    Ok(())
 }
 
 #[test]

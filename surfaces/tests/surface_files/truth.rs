@@ -61,6 +61,7 @@ const FILES: &[File] = &[
     ("plain_i32_offset.sur",       500.0, EXACT,  ReadOptions::new),
     ("plain_i32.mnt",              0.0,   EXACT,  ReadOptions::new),
     ("missing_i32.mnt",            0.0,   EXACT,  ReadOptions::new),
+    ("plain_i32_large_sectors.mnt", 0.0,  EXACT,  ReadOptions::new),
     ("missing_f32.al3d",           0.0,   SINGLE, ReadOptions::new),
     ("missing_u32.vk4",            300.0, EXACT,  ReadOptions::new),
     ("missing_f64.x3p",            0.0,   CLOSE,  ReadOptions::new),

@@ -14,6 +14,8 @@ pub(super) struct Dialect {
     decimal_comma: bool,
     /// Whether every line is digits, a comma, digits: a decimal comma would look the same.
     pub(super) has_one_comma: bool,
+    /// Whether whole numbers between commas begin with zeros, as what follows a decimal comma does.
+    pub(super) has_leading_zeros: bool,
 }
 
 /// The longest number that is read: a double in full takes 1079 digits, but nobody writes them.
@@ -21,8 +23,12 @@ const LONGEST: usize = 128;
 
 impl Dialect {
     /// Numbers with decimal points between blanks.
-    pub(super) const BLANKS: Self =
-        Self { separator: None, decimal_comma: false, has_one_comma: false };
+    pub(super) const BLANKS: Self = Self {
+        separator: None,
+        decimal_comma: false,
+        has_one_comma: false,
+        has_leading_zeros: false,
+    };
 
     /// The dialect of the lines of numbers in a file.
     pub(super) fn of(lines: &Lines) -> Self {
@@ -43,7 +49,10 @@ impl Dialect {
         };
         let has_one_comma = separator == Some(b',')
             && rows().filter(|line| !line.bytes.trim_ascii().is_empty()).all(is_one_comma);
-        Self { separator, decimal_comma, has_one_comma }
+        let has_leading_zeros = separator == Some(b',')
+            && !has(b'.')
+            && rows().any(|line| line.bytes.split(|byte| *byte == b',').any(begins_with_zero));
+        Self { separator, decimal_comma, has_one_comma, has_leading_zeros }
     }
 
     /// How a text is written.
@@ -149,6 +158,11 @@ fn is_one_comma(line: Line) -> bool {
         return false;
     };
     before.last().is_some_and(u8::is_ascii_digit) && after.first().is_some_and(u8::is_ascii_digit)
+}
+
+/// Whether a cell has digits behind a first zero.
+fn begins_with_zero(cell: &[u8]) -> bool {
+    matches!(cell.trim_ascii(), [b'0', digit, ..] if digit.is_ascii_digit())
 }
 
 /// Whether a line has several words without a tab between any of them.

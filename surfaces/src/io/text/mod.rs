@@ -108,6 +108,11 @@ fn generic(
         layout.is_some() || !table.dialect.has_one_comma || table.columns != 2,
         "each line has one comma: two numbers, or one with a decimal comma; part columns by ';', or write decimal points"
     );
+    ensure!(
+        layout.is_some() || !table.dialect.has_leading_zeros,
+        "numbers parted by commas begin with zeros, as what follows a decimal comma does; part columns by ';', or write \
+         decimal points"
+    );
     let is_list = is_xyz || header.lateral_unit.is_some();
     let is_asked = layout.is_some();
     let found = match layout {

@@ -1,3 +1,8 @@
+use std::io::{Cursor, Seek, SeekFrom, Write};
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
 use super::*;
 use crate::io::testing::{assert_refused, only, put};
 
@@ -90,4 +95,54 @@ fn defects_are_named() {
     }
     assert_refused(parse(b"VK3_ and more of it"), "does not begin with 'VK4_'");
     assert_refused(parse(b"VK6\0 and more of it"), "no complete zip archive");
+}
+
+/// An archive of members behind a picture, as `.vk6` and `.vk7` are. Places in it count from its beginning, or from that
+/// of the file.
+fn archive(
+    begin: &[u8],
+    from_archive: bool,
+    method: CompressionMethod,
+    members: &[(&str, &[u8])],
+) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+    // The picture holds what an empty archive looks like.
+    let picture = [&b"BM"[..], b"PK\x05\x06", &[0; 18]].concat();
+    let head = [begin, &(picture.len() as u32).to_le_bytes()[..], &picture].concat();
+    let mut zip = Cursor::new(if from_archive { Vec::new() } else { head.clone() });
+    zip.seek(SeekFrom::End(0))?;
+    let mut zip = ZipWriter::new(zip);
+    for (name, bytes) in members {
+        zip.start_file(*name, SimpleFileOptions::default().compression_method(method))?;
+        zip.write_all(bytes)?;
+    }
+    let zip = zip.finish()?.into_inner();
+    Ok(if from_archive { [head, zip].concat() } else { zip })
+}
+
+#[test]
+fn archives_hold_the_same_images() -> Result<(), Box<dyn std::error::Error>> {
+    let whole = file(&[(32, VALUES.map(|z| u32::from(z).to_le_bytes()).concat())]);
+    let expected = parse(&whole)?;
+    let (height, conditions) = ((MEMBER, &whole[..]), ("VkMeasureCondition", &b"<xml/>"[..]));
+    // An archive in the archive, as of images of many exposures.
+    let inner = archive(b"", true, CompressionMethod::Stored, &[("Vk4File.bmp", b"BM")])?;
+    let inner = ("VkHDRImages", &inner[..]);
+    for begin in ARCHIVES {
+        for from_archive in [true, false] {
+            for method in [CompressionMethod::Stored, CompressionMethod::Deflated] {
+                for members in [
+                    vec![height],
+                    vec![height, conditions, inner],
+                    vec![inner, conditions, height],
+                    vec![conditions, ("folder/Vk4File", height.1)],
+                ] {
+                    assert_eq!(parse(&archive(begin, from_archive, method, &members)?)?, expected);
+                }
+            }
+        }
+    }
+    let two = [height, ("folder/Vk4File", height.1)];
+    let two = archive(ARCHIVES[0], true, CompressionMethod::Stored, &two)?;
+    assert_refused(parse(&two), "two members 'Vk4File'");
+    Ok(())
 }
