@@ -66,9 +66,10 @@ fn stresses_are_printed_and_drawn() -> Done {
         assert_eq!(greatest.len(), survey.depths.len());
         let most = greatest.into_iter().fold(0.0, f64::max);
         assert_eq!(most, survey.greatest(Measure::VonMises).value);
-        assert_eq!(body["first_yield"].is_null(), place == 1);
+        assert_eq!(body["materials"].as_array().map(Vec::len), Some(1));
+        assert_eq!(body["materials"][0]["first_yield"].is_null(), place == 1);
     }
-    let first = &document["bodies"][0]["first_yield"];
+    let first = &document["bodies"][0]["materials"][0]["first_yield"];
     let found = first["von_mises"]["value"].as_f64().ok_or("no stress")?;
     assert!((found / 1e9 - 1.0).abs() < 1e-4 && first["load"].as_f64() < Some(load), "{first}");
     Ok(())
@@ -103,6 +104,29 @@ fn coats_have_stresses() -> Done {
         assert!(depths.iter().any(|other| other.as_f64() == Some(depth)), "{depths:?}");
     }
     assert!(folder.join("seen/section_x.png").exists());
+
+    // Of each material the load that the library finds; one yield stress is that of both.
+    let record = LoadingRecord::read_npz(folder.join("coat.npz"))?;
+    let below = Subsurface::of_record(&record, 0.0)?;
+    let mut path = record.replay()?;
+    for (words, strengths) in [("2GPa,5e8", [2e9, 5e8]), ("1e9", [1e9; 2])] {
+        let line = format!("stress coat.npz --yield-stress {words} --json");
+        let document: Value = serde_json::from_slice(&run(&folder.0, &line)?.stdout)?;
+        let materials = document["bodies"][0]["materials"].as_array().ok_or("no materials")?;
+        let found = below.first_yields(&mut path, record.history(), &strengths)?;
+        assert_eq!(materials.len(), 2);
+        for ((told, first), strength) in materials.iter().zip(found).zip(strengths) {
+            assert_eq!(told["yield_stress"].as_f64(), Some(strength));
+            let load = first.map(|first| first.state.contact.load);
+            assert!(load.is_some(), "{told}");
+            assert_eq!(told["first_yield"]["load"].as_f64(), load);
+        }
+    }
+    let words = run(&folder.0, "stress coat.npz --yield-stress 2e9,1e15")?.stdout;
+    let words = String::from_utf8(words)?;
+    for said in ["layer 1 yields first at W = ", "base does not yield on this path"] {
+        assert!(words.contains(said), "{said}: {words}");
+    }
     Ok(())
 }
 
@@ -120,6 +144,10 @@ fn what_has_no_answer_is_refused() -> Done {
         ("stress path.npz --poisson 0.3 --volume 0", &["--volume"]),
         ("stress coat.npz --friction 0.1", &["layers"]),
         ("stress coat.npz --poisson 0.3", &["--poisson"]),
+        (
+            "stress coat.npz --yield-stress 1e9,2e9,3e9",
+            &["--yield-stress", "has 2, and 3 are given"],
+        ),
     ] {
         is_refused(&output(&folder.0, line)?, words);
     }

@@ -31,7 +31,7 @@ Where to find it
     contact patches, percolation, activation
 ``Seal``
     leakage through the gap
-``stress``, ``stress_of``, ``first_yield``
+``stress``, ``stress_of``, ``first_yield``, ``first_yields``
     stress below the surface
 ``shear``
     tangential loads: partial slip, stiffness, dissipation
@@ -92,6 +92,7 @@ from asperity._asperity import (
     cylinder,
     example_surface,
     first_yield,
+    first_yields,
     formats,
     gap_distribution,
     hardness,
@@ -159,6 +160,7 @@ __all__ = [
     "errors",
     "example_surface",
     "first_yield",
+    "first_yields",
     "formats",
     "gap_distribution",
     "hardness",

@@ -51,6 +51,7 @@ __all__ = [
     "cylinder",
     "example_surface",
     "first_yield",
+    "first_yields",
     "formats",
     "gap_distribution",
     "hardness",
@@ -833,6 +834,14 @@ def first_yield(
     friction: float = 0.0,
     angle: float = 0.0,
 ) -> results.FirstYield | None: ...
+def first_yields(
+    path: LoadingPath,
+    yield_stresses: ArrayLike,
+    poissons_ratio: float | None = None,
+    *,
+    friction: float = 0.0,
+    angle: float = 0.0,
+) -> list[results.FirstYield | None]: ...
 def shear(
     path: LoadingPath | History,
     *,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use asperity::Error;
 use asperity::nalgebra::DMatrix;
 use asperity::record::LoadingRecord;
-use asperity::stress::{Greatest, Measure, Subsurface};
+use asperity::stress::{FirstYield, Greatest, Measure, Subsurface};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -133,13 +133,46 @@ fn first_yield<'py>(
     let below = of_path(py, &path, poissons_ratio, (friction, angle))?;
     let history = path.history_now(py).history;
     let found = path.computed(py, |engine| below.first_yield(engine, &history, yield_stress))?;
-    let of = |found: asperity::stress::FirstYield| {
-        result!(py, "FirstYield", {
-            state: State::new(found.state),
-            greatest: of_greatest(py, found.greatest)?,
-        })
-    };
-    found.map(of).transpose()
+    found.map(|found| of_first(py, found)).transpose()
+}
+
+/// The same of each material of a body with layers.
+///
+/// Parameters
+/// ----------
+/// path : LoadingPath
+///     With its states so far.
+/// yield_stresses : array_like of float
+///     [Pa], one for each layer from the uppermost on, and one for the base unless that is rigid.
+/// poissons_ratio, friction, angle
+///     As of `stress`.
+///
+/// Returns
+/// -------
+/// list of results.FirstYield or None
+///     One for each; None if the path ends before.
+#[pyfunction]
+#[pyo3(signature = (path, yield_stresses, poissons_ratio=None, *, friction=0.0, angle=0.0))]
+fn first_yields<'py>(
+    py: Python<'py>,
+    path: PyRef<'py, LoadingPath>,
+    yield_stresses: &Bound<'py, PyAny>,
+    poissons_ratio: Option<f64>,
+    friction: f64,
+    angle: f64,
+) -> Fallible<Vec<Option<Bound<'py, PyAny>>>> {
+    let strengths = Found::of(yield_stresses, "yield_stresses", Kind::Real)?.list()?;
+    let below = of_path(py, &path, poissons_ratio, (friction, angle))?;
+    let history = path.history_now(py).history;
+    let found = path.computed(py, |engine| below.first_yields(engine, &history, &strengths))?;
+    found.into_iter().map(|found| found.map(|found| of_first(py, found)).transpose()).collect()
+}
+
+fn of_first<'py>(py: Python<'py>, found: FirstYield) -> Fallible<Bound<'py, PyAny>> {
+    result!(py, "FirstYield", {
+        state: State::new(found.state),
+        greatest: of_greatest(py, found.greatest)?,
+    })
 }
 
 /// The body of a path.
@@ -270,5 +303,6 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Stress>()?;
     module.add_function(wrap_pyfunction!(stress, module)?)?;
     module.add_function(wrap_pyfunction!(stress_of, module)?)?;
-    module.add_function(wrap_pyfunction!(first_yield, module)?)
+    module.add_function(wrap_pyfunction!(first_yield, module)?)?;
+    module.add_function(wrap_pyfunction!(first_yields, module)?)
 }

@@ -38,10 +38,26 @@ def test_the_stress_of_the_program(program: Callable[..., str], tmp_path: Path) 
             field = below.at_depth(found.depth)
             assert getattr(field, name)[found.row, found.column] == pytest.approx(found.value, rel=1e-12)
     first = asp.first_yield(path, 1e9, friction=0.2, angle=30.0)
-    assert first is not None and first.state.load == told["bodies"][0]["first_yield"]["load"]
+    assert first is not None and first.state.load == told["bodies"][0]["materials"][0]["first_yield"]["load"]
     assert first.greatest.value == pytest.approx(1e9, rel=1e-4)
     assert asp.first_yield(path, 1e15) is None
     assert pickle.loads(pickle.dumps(survey)).greatest == survey.greatest
+
+
+def test_each_material_yields_by_itself(program: Callable[..., str], tmp_path: Path) -> None:
+    record = tmp_path / "coat.npz"
+    program("path", "--nodes", 16, "--layer", "400e9,0.25,2e-4", "--base", "steel", "--record", record, "--out", tmp_path / "out")
+    told = json.loads(program("stress", record, "--yield-stress", "2e9,5e8", "--json"))
+    path = asp.open(record)
+    depths = []
+    for first, material in zip(asp.first_yields(path, [2e9, 5e8]), told["bodies"][0]["materials"], strict=True):
+        assert first is not None and first.state.load == material["first_yield"]["load"]
+        assert first.greatest.value == pytest.approx(material["yield_stress"], rel=1e-4)
+        depths.append(first.greatest.depth)
+    assert depths[0] <= 2e-4 < depths[1]
+    assert asp.first_yields(path, [1e15, 5e8])[0] is None
+    with pytest.raises(errors.AsperityError, match="2 materials"):
+        asp.first_yields(path, [1e9])
 
 
 def test_rows_and_columns() -> None:

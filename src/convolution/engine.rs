@@ -9,7 +9,7 @@ use super::transforms::{Parity, Transforms, Workspace};
 use super::transpose::{blocks, gather, interleave, pitch};
 use super::tuning::{BLOCK, PARALLEL_NODES, PARTS};
 use crate::kernel::KernelTable;
-use crate::parallel::{for_each_block, inside};
+use crate::parallel::{for_each_block, for_each_chunk, inside};
 use crate::{Boundary, Error, Grid, KernelError};
 
 /// Error of the Fourier transform of a kernel, relative to the greatest value: a few units in the last place.
@@ -70,35 +70,53 @@ impl Engine<f64> {
     pub(super) fn from_table(table: &KernelTable) -> Result<Self, Error> {
         // Inside the grid there is always a coefficient.
         let coefficient = |di, dj| table.coefficient(di, dj).unwrap_or(0.0);
-        let waves = None;
-        Self::new((table.grid(), table.boundary()), Parity::Even, &coefficient, waves)
+        let mut engine = Self::blank((table.grid(), table.boundary()));
+        engine.set(Parity::Even, Some(&coefficient), None)?;
+        Ok(engine)
     }
 
-    /// Prepares the convolution with coefficients at offsets with 0 ≤ dj < ny, and |di| < nx, or 0 ≤ di < nx where x
-    /// repeats. What `waves` gives for 0 ≤ kx ≤ px / 2 and 0 ≤ ky < py is added to their symbol, or to its imaginary
-    /// part.
+    /// Prepares a convolution of which nothing comes until its symbol is [`set`](Self::set).
+    pub(super) fn blank((grid, boundary): (Grid, Boundary)) -> Self {
+        let transforms = Transforms::<f64>::new(&grid, boundary);
+        let spectra = Spectra::new(&grid, &transforms);
+        let symbol = vec![0.0; transforms.columns() * transforms.padded().1];
+        let parity = Parity::Even;
+        Self::of(Filter { grid, boundary, transforms, parity, symbol }, spectra)
+    }
+
+    /// Takes another symbol: the transform of coefficients at offsets with 0 ≤ dj < ny, and |di| < nx, or 0 ≤ di < nx
+    /// where x repeats, and what `waves` gives for 0 ≤ kx ≤ px / 2 and 0 ≤ ky < py, which is added to it, or to its
+    /// imaginary part.
     ///
     /// # Errors
     ///
     /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
-    pub(super) fn new(
-        (grid, boundary): (Grid, Boundary),
+    pub(super) fn set(
+        &mut self,
         parity: Parity,
-        coefficient: Table<'_, isize>,
+        coefficient: Option<Table<'_, isize>>,
         waves: Option<Table<'_, usize>>,
-    ) -> Result<Self, Error> {
-        let transforms = Transforms::<f64>::new(&grid, boundary);
-        let mut spectra = Spectra::new(&grid, &transforms);
-        spectra.fill_rows(&transforms, grid.ny(), |dj, spectrum, work| {
-            transforms.forward_kernel_row(|di| coefficient(di, dj as isize), spectrum, work);
-        });
-        let mut symbol = spectra.symbol(&transforms, grid.ny(), parity);
-        if let Some(waves) = waves {
-            let (px, py) = transforms.padded();
-            let normalisation = 1.0 / (px as f64 * py as f64);
-            for (place, value) in symbol.iter_mut().enumerate() {
-                *value += waves(place / py, place % py) * normalisation;
+    ) -> Result<(), Error> {
+        let Filter { grid, boundary, ref transforms, .. } = *self.filter;
+        let transforms = transforms.clone();
+        let (px, py) = transforms.padded();
+        let mut symbol = match coefficient {
+            None => vec![0.0; transforms.columns() * py],
+            Some(coefficient) => {
+                self.spectra.fill_rows(&transforms, grid.ny(), |dj, spectrum, work| {
+                    let row = |di| coefficient(di, dj as isize);
+                    transforms.forward_kernel_row(row, spectrum, work);
+                });
+                self.spectra.symbol(&transforms, grid.ny(), parity)
             }
+        };
+        if let Some(waves) = waves {
+            let normalisation = 1.0 / (px as f64 * py as f64);
+            for_each_chunk(&mut symbol, py, |kx, column| {
+                for (ky, value) in column.iter_mut().enumerate() {
+                    *value += waves(kx, ky) * normalisation;
+                }
+            });
         }
         if let Some(&value) = symbol.iter().find(|value| !value.is_finite()) {
             return Err(Error::OutOfRange {
@@ -107,7 +125,8 @@ impl Engine<f64> {
                 expected: "finite",
             });
         }
-        Ok(Self::of(Filter { grid, boundary, transforms, parity, symbol }, spectra))
+        self.filter = Arc::new(Filter { grid, boundary, transforms, parity, symbol });
+        Ok(())
     }
 
     /// The same convolution in single precision, its symbol divided by `unit` and rounded once.

@@ -117,19 +117,24 @@ impl Convolution {
         Ok(Self { engine: Engine::from_table(table)? })
     }
 
-    /// Of any quantity that goes with the pressure, by its coefficients at offsets and what `waves` adds to their
-    /// symbol: see [`Engine::new`].
+    /// Of any quantity that goes with the pressure: nothing until it is [`set`](Self::set).
+    pub(crate) fn blank(domain: (Grid, Boundary)) -> Self {
+        Self { engine: Engine::blank(domain) }
+    }
+
+    /// Takes another quantity, by its coefficients at offsets and what `waves` adds to their symbol: see
+    /// [`Engine::set`].
     ///
     /// # Errors
     ///
     /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
-    pub(crate) fn of(
-        domain: (Grid, Boundary),
+    pub(crate) fn set(
+        &mut self,
         parity: Parity,
-        coefficient: Table<'_, isize>,
+        coefficient: Option<Table<'_, isize>>,
         waves: Option<Table<'_, usize>>,
-    ) -> Result<Self, Error> {
-        Ok(Self { engine: Engine::new(domain, parity, coefficient, waves)? })
+    ) -> Result<(), Error> {
+        self.engine.set(parity, coefficient, waves)
     }
 
     /// The grid of the fields.

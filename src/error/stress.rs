@@ -20,4 +20,15 @@ pub enum StressError {
         /// Thickness of all layers \[m\].
         thickness: f64,
     },
+
+    /// Not one yield stress for each layer and the base.
+    #[error(
+        "the body has {materials} materials from the uppermost layer to the base, and {given} yield stresses are given"
+    )]
+    YieldStresses {
+        /// How many are given.
+        given: usize,
+        /// How many there should be.
+        materials: usize,
+    },
 }

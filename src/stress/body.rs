@@ -213,16 +213,11 @@ impl Subsurface {
         let (nx, ny) = grid.shape();
         let mut sums: [DMatrix<f64>; COMPONENTS] = std::array::from_fn(|_| DMatrix::zeros(nx, ny));
         let loads = [(Load::Normal, pressure), (Load::AlongX, along_x), (Load::AlongY, along_y)];
-        let mut found = vec![0.0; grid.nodes()];
         for (load, field) in loads {
             if field.iter().all(|value| *value == 0.0) {
                 continue;
             }
-            let kernel = self.kernel(load, depth)?;
-            for (component, sum) in sums.iter_mut().enumerate() {
-                kernel.convolution(component)?.apply(field.as_slice(), &mut found)?;
-                sum.iter_mut().zip(&found).for_each(|(sum, value)| *sum += value);
-            }
+            self.kernel(load, depth)?.add(field.as_slice(), &mut sums)?;
         }
         Ok(StressField::new(depth, sums))
     }

@@ -1,5 +1,7 @@
 //! A depth, or what deeper ones say of it. Lengths are in long sides of a cell.
 
+use super::lanes::{LANES, Lanes, each, fades};
+
 /// Depths from which shallower ones are extrapolated, 1, 2, … long sides of a cell.
 const NODES: usize = 10;
 
@@ -47,22 +49,24 @@ impl Depth {
         }
     }
 
-    /// The sums of e^(−q z) and of q z e^(−q z).
-    pub(super) fn of_wave(&self, q: f64) -> (f64, f64) {
+    /// The sums of e^(−q z) and of q z e^(−q z), of waves side by side.
+    #[inline(always)]
+    pub(super) fn of_waves(&self, q: &Lanes) -> (Lanes, Lanes) {
         match *self {
             Self::At(z) => {
-                let fades = libm::exp(-q * z);
-                (fades, q * z * fades)
+                let plain = fades(&each(|k| q[k] * z));
+                (plain, each(|k| q[k] * z * plain[k]))
             }
             Self::Extrapolated { weights } => {
-                let step = libm::exp(-q);
-                let (mut fades, mut plain, mut deep) = (1.0, 0.0, 0.0);
-                for (k, weight) in (1..).zip(weights) {
-                    fades *= step;
-                    plain += weight * fades;
-                    deep += weight * (f64::from(k) * q) * fades;
+                // Polynomials in e^(−q).
+                let step = fades(q);
+                let (mut plain, mut deep) = ([0.0; LANES], [0.0; LANES]);
+                for (place, weight) in weights.into_iter().enumerate().rev() {
+                    let by_depth = (place + 1) as f64 * weight;
+                    plain = each(|k| step[k] * (plain[k] + weight));
+                    deep = each(|k| step[k] * (deep[k] + by_depth));
                 }
-                (plain, deep)
+                (plain, each(|k| q[k] * deep[k]))
             }
         }
     }

@@ -1,5 +1,7 @@
 //! The stress kernel of a depth: coefficients, or a symbol, for each surrounding of the grid.
 
+use nalgebra::DMatrix;
+
 use super::cells::{Stresses, rectangles, strips};
 use super::depth::Depth;
 use super::load::{COMPONENTS, Load, Response, transposed};
@@ -7,6 +9,9 @@ use super::waves::{Between, Spectrum};
 use crate::convolution::{Convolution, Parity};
 use crate::kernel::Below;
 use crate::{Boundary, Error, Grid};
+
+/// Coefficients by offset.
+type Offsets<'a> = &'a (dyn Fn(isize, isize) -> f64 + Sync);
 
 /// Periods between the grid and its image across, in the periodic kernel that one which repeats along a side is made
 /// from: waves that vary along it fade as exp(−2π|y|/L).
@@ -96,9 +101,24 @@ impl StressKernel {
         Ok(Self { domain, response, table })
     }
 
-    /// The convolution of one component.
-    pub(super) fn convolution(&self, component: usize) -> Result<Convolution, Error> {
-        let domain = (self.domain.grid, self.domain.boundary);
+    /// Adds all components under a load on the nodes to `sums`.
+    pub(super) fn add(
+        &self,
+        load: &[f64],
+        sums: &mut [DMatrix<f64>; COMPONENTS],
+    ) -> Result<(), Error> {
+        let mut convolution = Convolution::blank((self.domain.grid, self.domain.boundary));
+        let mut found = vec![0.0; load.len()];
+        for (component, sum) in sums.iter_mut().enumerate() {
+            self.set(&mut convolution, component)?;
+            convolution.apply(load, &mut found)?;
+            sum.iter_mut().zip(&found).for_each(|(sum, value)| *sum += value);
+        }
+        Ok(())
+    }
+
+    /// Makes a convolution that of one component.
+    fn set(&self, convolution: &mut Convolution, component: usize) -> Result<(), Error> {
         let parity = self.response.parity(component);
         let (nx, ny) = self.domain.grid.shape();
         let (of_x, _) = self.response.signs(component);
@@ -108,13 +128,14 @@ impl StressKernel {
                 let at = |di: isize, dj: isize| {
                     sign(di, of_x) * values[di.unsigned_abs() + nx * dj.unsigned_abs()][component]
                 };
-                Convolution::of(domain, parity, &at, None)
+                convolution.set(parity, Some(&at), None)
             }
             Table::Periodic { cells, waves } => {
-                let at = |di: isize, dj: isize| match cells {
-                    Some(values) => values[di.unsigned_abs() + nx * dj.unsigned_abs()][component],
-                    None => 0.0,
-                };
+                let of_cells = cells.as_ref().map(|values| {
+                    move |di: isize, dj: isize| {
+                        values[di.unsigned_abs() + nx * dj.unsigned_abs()][component]
+                    }
+                });
                 let uniform = match cells {
                     Some(values) => values.iter().map(|value| value[component]).sum(),
                     None => 0.0,
@@ -128,13 +149,14 @@ impl StressKernel {
                         value
                     }
                 };
-                Convolution::of(domain, parity, &at, Some(&of_wave))
+                let of_cells = of_cells.as_ref().map(|at| at as Offsets<'_>);
+                convolution.set(parity, of_cells, Some(&of_wave))
             }
             Table::AlongX(values) => {
                 let at = |di: isize, dj: isize| {
                     values[di.unsigned_abs() + nx * dj.unsigned_abs()][component]
                 };
-                Convolution::of(domain, parity, &at, None)
+                convolution.set(parity, Some(&at), None)
             }
             Table::AlongY(values) => {
                 let component = transposed(component);
@@ -142,7 +164,7 @@ impl StressKernel {
                     let value = values[dj.unsigned_abs() + ny * di.unsigned_abs()][component];
                     sign(di, of_x) * value
                 };
-                Convolution::of(domain, parity, &at, None)
+                convolution.set(parity, Some(&at), None)
             }
         }
     }
@@ -250,11 +272,10 @@ fn along_x(grid: &Grid, response: &Response, z: f64) -> Result<Vec<Stresses>, Er
     let mut one = vec![0.0; wide.nodes()];
     one[0] = 1.0;
     let mut found = vec![0.0; wide.nodes()];
+    let mut convolution = Convolution::blank((wide, Boundary::Periodic));
     for component in 0..COMPONENTS {
         let of_wave = |kx: usize, ky: usize| waves.at((kx, ky), component, response);
-        let domain = (wide, Boundary::Periodic);
-        let parity = response.parity(component);
-        let mut convolution = Convolution::of(domain, parity, &|_, _| 0.0, Some(&of_wave))?;
+        convolution.set(response.parity(component), None, Some(&of_wave))?;
         convolution.apply(&one, &mut found)?;
         values.iter_mut().zip(&found).for_each(|(value, found)| value[component] += found);
     }

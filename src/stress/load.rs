@@ -118,6 +118,8 @@ pub(super) fn transposed(component: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lanes::LANES;
+    use super::super::rectangle::WaveSums;
     use super::*;
 
     /// On the surface a wave has the traction of the load, and nothing else; below, it is in equilibrium, and
@@ -131,9 +133,13 @@ mod tests {
                 let q = qx.hypot(qy);
                 let at = |z: f64| {
                     let fades = (-q * z).exp();
-                    let mut values = Values::default();
-                    values.add_wave((qx / q, qy / q), (fades, q * z * fades));
-                    response.of(&values)
+                    let mut sums = WaveSums::default();
+                    let lanes = |value: f64| [value; LANES];
+                    sums.add(
+                        (&lanes(qx / q), &lanes(qy / q)),
+                        (&lanes(fades), &lanes(q * z * fades)),
+                    );
+                    response.of(&sums.values(0))
                 };
                 let [_, _, zz, yz, xz, _] = at(0.0);
                 let expected = match load {

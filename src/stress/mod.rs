@@ -5,7 +5,7 @@
 //! | all six components at a depth | [`Subsurface::at_depth`], [`StressField`] |
 //! | von Mises' and Tresca's stress, greatest shear and tension | [`Measure`], [`StressField::map`] |
 //! | where each is greatest, over all depths | [`Subsurface::survey`] |
-//! | under which load a body begins to yield | [`Subsurface::first_yield`] |
+//! | under which load a body begins to yield, and each of its materials | [`Subsurface::first_yield`], [`Subsurface::first_yields`] |
 //! | with friction, or tractions along the surface | [`Subsurface::sliding`], [`Subsurface::under_traction`] |
 //! | a volume for ParaView | [`Subsurface::write_volume`] |
 //!
@@ -47,6 +47,7 @@ mod body;
 mod cells;
 mod depth;
 mod kernel;
+mod lanes;
 mod load;
 mod rectangle;
 mod survey;

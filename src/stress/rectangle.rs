@@ -26,6 +26,8 @@
 
 use std::f64::consts::TAU;
 
+use super::lanes::{LANES, Lanes, each};
+
 /// A product of direction cosines of a wave; one of them squared is what 1 leaves of the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cosines {
@@ -95,15 +97,35 @@ impl Values {
         deep[Cosines::Y as usize] = 2.0 * z * z / square / TAU;
         Self { plain, deep }
     }
+}
 
-    /// Adds the products themselves for a wave along (cx, cy), times the sums `plain` of $`e^{-q z}`$ and `deep` of $`q
+/// Sums over waves, of neighbours side by side.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct WaveSums {
+    plain: [Lanes; COUNT],
+    deep: [Lanes; COUNT],
+}
+
+impl WaveSums {
+    /// Adds the products themselves for waves along (cx, cy), times the sums `plain` of $`e^{-q z}`$ and `deep` of $`q
     /// z\, e^{-q z}`$.
-    pub(super) fn add_wave(&mut self, (cx, cy): (f64, f64), (plain, deep): (f64, f64)) {
-        let products = [1.0, cx, cy, cx * cx, cx * cy, cx * cy * cy, cx * cx * cy];
-        for (place, c) in products.into_iter().enumerate() {
-            self.plain[place] += c * plain;
-            self.deep[place] += c * deep;
+    #[inline(always)]
+    pub(super) fn add(&mut self, (cx, cy): (&Lanes, &Lanes), (plain, deep): (&Lanes, &Lanes)) {
+        let xx = each(|k| cx[k] * cx[k]);
+        let xy = each(|k| cx[k] * cy[k]);
+        let products =
+            [[1.0; LANES], *cx, *cy, xx, xy, each(|k| xy[k] * cy[k]), each(|k| xx[k] * cy[k])];
+        for (place, c) in products.iter().enumerate() {
+            for k in 0..LANES {
+                self.plain[place][k] += c[k] * plain[k];
+                self.deep[place][k] += c[k] * deep[k];
+            }
         }
+    }
+
+    /// Those of one of the neighbours.
+    pub(super) fn values(&self, lane: usize) -> Values {
+        Values { plain: self.plain.map(|sums| sums[lane]), deep: self.deep.map(|sums| sums[lane]) }
     }
 }
 

@@ -81,6 +81,13 @@ impl Survey {
     }
 }
 
+/// The depths of one material, both included \[m\].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    top: f64,
+    bottom: f64,
+}
+
 /// Depths grow by this factor.
 const RATIO: f64 = 1.25;
 /// The least one below the surface, in sides of a cell.
@@ -91,7 +98,7 @@ const REFINED: usize = 3;
 impl Subsurface {
     /// Depths at which stresses under a pressure are worth looking at \[m\]: the surface, and from a tenth of a cell on
     /// by a factor of 1.25 to the diameter of a circle of the area of the largest patch; of layers their interfaces as
-    /// well, from both sides.
+    /// well, from both sides, and their middles.
     ///
     /// # Errors
     ///
@@ -114,37 +121,42 @@ impl Subsurface {
             depths.push(depth);
             depth *= RATIO;
         }
-        let end = self.end();
-        for interface in self.interfaces() {
-            depths.extend([interface, interface.next_up()]);
+        for Span { top, bottom } in self.spans() {
+            depths
+                .extend([top, 0.5 * (top + bottom), bottom].into_iter().filter(|z| z.is_finite()));
         }
+        let end = self.end();
         depths.retain(|depth| *depth <= end);
         depths.sort_by(f64::total_cmp);
+        depths.dedup();
         Ok(depths)
     }
 
-    /// Depths of the lower sides of layers \[m\].
-    fn interfaces(&self) -> Vec<f64> {
+    /// What each material takes of the depth: the layers from the uppermost on, and the base unless it is rigid.
+    pub(super) fn spans(&self) -> Vec<Span> {
         let layers = self.layers().map_or(&[][..], LayeredBody::layers);
-        let mut depth = 0.0;
-        layers
-            .iter()
-            .map(|layer| {
-                depth += layer.thickness;
-                depth
-            })
-            .collect()
+        let mut spans = Vec::new();
+        let (mut top, mut bottom) = (0.0_f64, 0.0);
+        for layer in layers {
+            bottom += layer.thickness;
+            spans.push(Span { top, bottom });
+            // On an interface stresses are those of the upper layer.
+            top = f64::next_up(bottom);
+        }
+        if !self.layers().is_some_and(|body| body.base() == Base::Rigid) {
+            spans.push(Span { top, bottom: f64::INFINITY });
+        }
+        spans
     }
 
     /// The greatest depth at which the body has stresses \[m\].
     fn end(&self) -> f64 {
-        let is_rigid = self.layers().is_some_and(|body| body.base() == Base::Rigid);
-        self.interfaces().last().copied().filter(|_| is_rigid).unwrap_or(f64::INFINITY)
+        self.spans().last().map_or(f64::INFINITY, |span| span.bottom)
     }
 
     /// The greatest stresses under a pressure at given depths \[m\], or, without any, at [those](Self::depths) that are
     /// worth it: as many more as are needed until von Mises' and the greatest shear stress fall with depth, and three
-    /// around the place where each is greatest.
+    /// around the place where each is greatest, in each material.
     ///
     /// # Errors
     ///
@@ -166,26 +178,45 @@ impl Subsurface {
         mut visit: impl FnMut(&StressField) -> Result<(), E>,
     ) -> Result<Survey, E> {
         let mut survey = Survey { depths: Vec::new() };
-        let mut add = |survey: &mut Survey, depth: f64| -> Result<(), E> {
-            let field = self.at_depth(pressure, depth)?;
-            survey.insert(DepthSurvey::new(self, &field));
-            visit(&field)
-        };
-        let chosen = self.depths(pressure)?;
-        for &depth in depths.unwrap_or(&chosen) {
-            add(&mut survey, depth)?;
+        match depths {
+            Some(depths) => {
+                for &depth in depths {
+                    self.survey_depth((pressure, depth), &mut survey, &mut visit)?;
+                }
+            }
+            None => {
+                for span in self.spans() {
+                    let found = self.survey_within(span, pressure, &mut visit)?;
+                    survey.depths.extend(found.depths);
+                }
+            }
         }
         if survey.depths.is_empty() {
             return Err(Error::from(StressError::NoLoad).into());
         }
-        if depths.is_some() {
-            return Ok(survey);
+        Ok(survey)
+    }
+
+    /// The same within one material, at depths that are chosen.
+    pub(super) fn survey_within<E: From<Error>>(
+        &self,
+        span: Span,
+        pressure: &DMatrix<f64>,
+        visit: &mut impl FnMut(&StressField) -> Result<(), E>,
+    ) -> Result<Survey, E> {
+        let mut survey = Survey { depths: Vec::new() };
+        let mut add = |survey: &mut Survey, depth: f64| {
+            self.survey_depth((pressure, depth), survey, &mut *visit)
+        };
+        let within = |depth: &f64| (span.top..=span.bottom).contains(depth);
+        for depth in self.depths(pressure)?.into_iter().filter(within) {
+            add(&mut survey, depth)?;
         }
         let sides = self.grid().sides();
         for measure in [Measure::VonMises, Measure::GreatestShear] {
             while survey.place(measure) + 1 == survey.depths.len() {
                 let deepest = survey.greatest(measure).depth;
-                if deepest > sides.0.max(sides.1) || RATIO * deepest > self.end() {
+                if deepest > sides.0.max(sides.1) || RATIO * deepest > span.bottom {
                     break;
                 }
                 add(&mut survey, RATIO * deepest)?;
@@ -197,6 +228,17 @@ impl Subsurface {
             }
         }
         Ok(survey)
+    }
+
+    fn survey_depth<E: From<Error>>(
+        &self,
+        (pressure, depth): (&DMatrix<f64>, f64),
+        survey: &mut Survey,
+        visit: &mut impl FnMut(&StressField) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let field = self.at_depth(pressure, depth)?;
+        survey.insert(DepthSurvey::new(self, &field));
+        visit(&field)
     }
 }
 

@@ -4,11 +4,12 @@ use std::f64::consts::TAU;
 
 use super::cells::Stresses;
 use super::depth::Depth;
+use super::lanes::{LANES, Lanes, each};
 use super::load::{COMPONENTS, Response};
-use super::rectangle::Values;
+use super::rectangle::WaveSums;
 use crate::Grid;
 use crate::kernel::{Below, sinc};
-use crate::parallel::for_each_chunk;
+use crate::parallel::{for_each_chunk, vectorized};
 
 /// A wave has faded at this many times its reciprocal wave number: to 10⁻¹⁴, and all beyond it weigh little in a cell.
 const FADED: f64 = 32.0;
@@ -22,7 +23,7 @@ pub(super) enum Between {
     Waves,
 }
 
-/// Responses to the waves 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, kx fastest; to the uniform one [`Response::uniform`].
+/// Responses to the waves 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, ky fastest; to the uniform one [`Response::uniform`].
 #[derive(Debug)]
 pub(super) struct Spectrum {
     shape: (usize, usize),
@@ -32,10 +33,24 @@ pub(super) struct Spectrum {
 /// A wave along one side: its wave number, and what it has of a load on the nodes.
 type Wave = (f64, f64);
 
-/// A wave vector, its length, and what the wave has of a load on the nodes.
-type Alike = ((f64, f64), f64, f64);
+/// The same of neighbours along y, side by side.
+#[derive(Clone, Copy)]
+struct Neighbours {
+    q: Lanes,
+    weight: Lanes,
+    /// Square of the least wave number.
+    least: f64,
+}
 
-/// The waves along a side that look like k of n on the grid, up to the wave number `most`.
+/// Wave vectors, their lengths, and what each wave has of a load on the nodes.
+struct Waves {
+    qx: f64,
+    qy: Lanes,
+    q: Lanes,
+    weight: Lanes,
+}
+
+/// The waves along a side that look like k of n on the grid, up to the wave number `most`: as many for each k.
 fn alike(k: usize, (n, side): (usize, f64), between: Between, most: f64) -> Vec<Wave> {
     let turn = k as f64 / n as f64;
     match between {
@@ -43,9 +58,7 @@ fn alike(k: usize, (n, side): (usize, f64), between: Between, most: f64) -> Vec<
         Between::Cells => {
             let reach = (most * side / TAU + 0.5).ceil() as isize;
             let waves = (-reach..=reach).map(|m| turn + m as f64);
-            // Those that a cell averages to nothing are left out.
-            let weighed = waves.map(|turn| (TAU * turn / side, sinc(turn)));
-            weighed.filter(|(_, weight)| *weight != 0.0).collect()
+            waves.map(|turn| (TAU * turn / side, sinc(turn))).collect()
         }
     }
 }
@@ -55,12 +68,20 @@ impl Spectrum {
         // On the surface all waves count; it is never asked for of cells.
         let most = FADED / depth.least();
         Self::summed((grid, between), most, response, response.uniform(), |waves| {
-            let mut sum = Values::default();
-            waves.for_each(|((qx, qy), q, weight)| {
-                let (plain, deep) = depth.of_wave(q);
-                sum.add_wave((qx / q, qy / q), (weight * plain, weight * deep));
-            });
-            response.of(&sum)
+            let mut sums = WaveSums::default();
+            vectorized(
+                #[inline(always)]
+                || {
+                    for Waves { qx, qy, q, weight } in waves {
+                        let (plain, deep) = depth.of_waves(&q);
+                        sums.add(
+                            (&each(|k| qx / q[k]), &each(|k| qy[k] / q[k])),
+                            (&each(|k| weight[k] * plain[k]), &each(|k| weight[k] * deep[k])),
+                        );
+                    }
+                },
+            );
+            std::array::from_fn(|lane| response.of(&sums.values(lane)))
         })
     }
 
@@ -73,11 +94,16 @@ impl Spectrum {
     ) -> Self {
         let most = FADED / below.scale();
         Self::summed((grid, between), most, response, below.uniform(), |waves| {
-            let mut sum = [0.0; COMPONENTS];
-            waves.for_each(|((qx, qy), q, weight)| {
-                super::cells::add(&mut sum, weight, &below.of_wave(q, (qx / q, qy / q)));
-            });
-            sum
+            let mut sums = [[0.0; COMPONENTS]; LANES];
+            for Waves { qx, qy, q, weight } in waves {
+                for (k, sum) in sums.iter_mut().enumerate() {
+                    if between == Between::Waves || q[k] < most {
+                        let found = below.of_wave(q[k], (qx / q[k], qy[k] / q[k]));
+                        super::cells::add(sum, weight[k], &found);
+                    }
+                }
+            }
+            sums
         })
     }
 
@@ -88,35 +114,56 @@ impl Spectrum {
         self
     }
 
-    /// From the waves that look like each wave of the grid, up to the wave number `most`.
+    /// From the waves that look like each wave of the grid, of which `sum` is given all that are not beyond the wave
+    /// number `most`, and some that are.
     fn summed(
         (grid, between): (&Grid, Between),
         most: f64,
         response: &Response,
         uniform: Stresses,
-        sum: impl Fn(&mut dyn Iterator<Item = Alike>) -> Stresses + Sync + Send,
+        sum: impl Fn(&mut dyn Iterator<Item = Waves>) -> [Stresses; LANES] + Sync + Send,
     ) -> Self {
         let shape = grid.shape();
         let (nx, ny) = shape;
-        let along_x: Vec<Vec<Wave>> =
-            (0..=nx / 2).map(|kx| alike(kx, (nx, grid.dx()), between, most)).collect();
-        let width = along_x.len();
-        let mut values = vec![[0.0; COMPONENTS]; width * (ny / 2 + 1)];
-        for_each_chunk(&mut values, width, |ky, row| {
-            let along_y = alike(ky, (ny, grid.dy()), between, most);
-            for (kx, value) in row.iter_mut().enumerate() {
-                if (kx, ky) == (0, 0) {
-                    *value = uniform;
-                    continue;
-                }
-                let pairs = along_y.iter().flat_map(|y| along_x[kx].iter().map(move |x| (x, y)));
-                let mut waves = pairs.filter_map(|(&(qx, weight_x), &(qy, weight_y))| {
-                    let q = (qx * qx + qy * qy).sqrt();
-                    let counts = between == Between::Waves || q < most;
-                    counts.then_some(((qx, qy), q, weight_x * weight_y))
+        let height = ny / 2 + 1;
+        let neighbours = |first: usize| -> Vec<Neighbours> {
+            // Behind the last there is nothing to be found.
+            let waves =
+                |lane: usize| alike((first + lane).min(height - 1), (ny, grid.dy()), between, most);
+            let lanes: [Vec<Wave>; LANES] = std::array::from_fn(waves);
+            let of = |m: usize| {
+                let q = each(|k| lanes[k][m].0);
+                let least = q.iter().map(|q| q * q).fold(f64::INFINITY, f64::min);
+                Neighbours { q, weight: each(|k| lanes[k][m].1), least }
+            };
+            (0..lanes[0].len()).map(of).collect()
+        };
+        let along_y: Vec<Vec<Neighbours>> = (0..height).step_by(LANES).map(neighbours).collect();
+        let mut values = vec![[0.0; COMPONENTS]; (nx / 2 + 1) * height];
+        for_each_chunk(&mut values, height, |kx, column| {
+            let mut along_x = alike(kx, (nx, grid.dx()), between, most);
+            // Those that a cell averages to nothing are left out.
+            along_x.retain(|(_, weight)| *weight != 0.0);
+            for (values, along_y) in column.chunks_mut(LANES).zip(&along_y) {
+                let pairs = along_y.iter().flat_map(|y| along_x.iter().map(move |x| (x, y)));
+                let mut waves = pairs.filter_map(|(&(qx, weight), y)| {
+                    let counts = between == Between::Waves || qx * qx + y.least < most * most;
+                    counts.then(|| Waves {
+                        qx,
+                        qy: y.q,
+                        // The uniform wave has no direction, and an answer of its own.
+                        q: each(|k| (qx * qx + y.q[k] * y.q[k]).sqrt().max(f64::MIN_POSITIVE)),
+                        weight: each(|k| weight * y.weight[k]),
+                    })
                 });
-                *value = sum(&mut waves);
-                // The shortest wave of an even number of nodes runs both ways: what depends on the way is nothing.
+                let sums = sum(&mut waves);
+                values.copy_from_slice(&sums[..values.len()]);
+            }
+            if kx == 0 {
+                column[0] = uniform;
+            }
+            // The shortest wave of an even number of nodes runs both ways: what depends on the way is nothing.
+            for (ky, value) in column.iter_mut().enumerate() {
                 for (c, value) in value.iter_mut().enumerate() {
                     let (x, y) = response.signs(c);
                     if (x < 0.0 && 2 * kx == nx) || (y < 0.0 && 2 * ky == ny) {
@@ -130,8 +177,7 @@ impl Spectrum {
 
     /// Takes out the waves that do not vary along x.
     pub(super) fn without_mean_along_x(mut self) -> Self {
-        let width = self.shape.0 / 2 + 1;
-        self.values.chunks_mut(width).for_each(|row| row[0] = [0.0; COMPONENTS]);
+        self.values[..self.shape.1 / 2 + 1].fill([0.0; COMPONENTS]);
         self
     }
 
@@ -142,8 +188,8 @@ impl Spectrum {
         component: usize,
         response: &Response,
     ) -> f64 {
-        let (nx, ny) = self.shape;
-        let value = |ky: usize| self.values[kx + (nx / 2 + 1) * ky][component];
+        let ny = self.shape.1;
+        let value = |ky: usize| self.values[ky + (ny / 2 + 1) * kx][component];
         if 2 * ky <= ny { value(ky) } else { response.signs(component).1 * value(ny - ky) }
     }
 }

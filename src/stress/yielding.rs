@@ -1,10 +1,12 @@
 //! The load at which a body begins to yield.
 
+use nalgebra::DMatrix;
+
 use super::body::Subsurface;
-use super::survey::Greatest;
+use super::survey::{Greatest, Survey};
 use super::tensor::Measure;
 use crate::loading::History;
-use crate::{ContactTarget, Error, LoadingPath, LoadingState};
+use crate::{ContactTarget, Error, LoadingPath, LoadingState, StressError};
 
 /// The state of an elastic path at which a body begins to yield.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,46 +45,90 @@ impl Subsurface {
         history: &History,
         yield_stress: f64,
     ) -> Result<Option<FirstYield>, Error> {
-        let yield_stress = Error::require_positive("yield stress", yield_stress)?;
-        let Some(last) = history.states().last() else { return Ok(None) };
-        let mut at = |load: f64| -> Result<FirstYield, Error> {
-            let state = history.at(ContactTarget::Load(load))?;
-            let pressure = path.pressure_at(&state)?;
-            let greatest = self.survey(&pressure, None)?.greatest(Measure::VonMises);
-            Ok(FirstYield { state, greatest })
-        };
-        if last.contact.load <= 0.0 {
-            return Ok(None);
-        }
-        let mut above = at(last.contact.load)?;
-        if above.greatest.value < yield_stress {
-            return Ok(None);
-        }
-        let mut below: Option<FirstYield> = None;
-        for _ in 0..TRIALS {
-            let over = above.greatest.value / yield_stress;
-            if over - 1.0 <= FirstYield::TOLERANCE {
-                break;
-            }
-            let high = above.state.contact.load;
-            let load = match &below {
-                // As of a sphere, with the cube of the stress.
-                None => high * over.powi(-3),
-                Some(below) => between(below, &above, yield_stress),
-            };
-            let found = at(load)?;
-            if found.greatest.value < yield_stress {
-                let is_there = found.greatest.value >= (1.0 - FirstYield::TOLERANCE) * yield_stress;
-                if is_there {
-                    return Ok(Some(found));
-                }
-                below = Some(found);
-            } else {
-                above = found;
-            }
-        }
-        Ok(Some(above))
+        let survey = |pressure: &DMatrix<f64>| self.survey(pressure, None);
+        first_reached((path, history), yield_stress, survey)
     }
+
+    /// How many materials the body has: its layers, and the base unless it is rigid.
+    #[must_use]
+    pub fn materials(&self) -> usize {
+        self.spans().len()
+    }
+
+    /// The same of each material with a yield stress of its own, from the uppermost layer to the base.
+    ///
+    /// # Errors
+    ///
+    /// [`StressError::YieldStresses`] unless there is one for each of the [`materials`](Self::materials), and those of
+    /// [`Self::first_yield`].
+    pub fn first_yields(
+        &self,
+        path: &mut LoadingPath,
+        history: &History,
+        yield_stresses: &[f64],
+    ) -> Result<Vec<Option<FirstYield>>, Error> {
+        let spans = self.spans();
+        let (given, materials) = (yield_stresses.len(), spans.len());
+        if given != materials {
+            return Err(StressError::YieldStresses { given, materials }.into());
+        }
+        let of_each = spans.into_iter().zip(yield_stresses);
+        of_each
+            .map(|(span, yield_stress)| {
+                let survey = |pressure: &DMatrix<f64>| {
+                    self.survey_within(span, pressure, &mut |_| Ok::<(), Error>(()))
+                };
+                first_reached((&mut *path, history), *yield_stress, survey)
+            })
+            .collect()
+    }
+}
+
+/// The state at which von Mises' stress reaches a yield stress at any of the depths that `survey` looks at.
+fn first_reached(
+    (path, history): (&mut LoadingPath, &History),
+    yield_stress: f64,
+    survey: impl Fn(&DMatrix<f64>) -> Result<Survey, Error>,
+) -> Result<Option<FirstYield>, Error> {
+    let yield_stress = Error::require_positive("yield stress", yield_stress)?;
+    let Some(last) = history.states().last() else { return Ok(None) };
+    let mut at = |load: f64| -> Result<FirstYield, Error> {
+        let state = history.at(ContactTarget::Load(load))?;
+        let pressure = path.pressure_at(&state)?;
+        let greatest = survey(&pressure)?.greatest(Measure::VonMises);
+        Ok(FirstYield { state, greatest })
+    };
+    if last.contact.load <= 0.0 {
+        return Ok(None);
+    }
+    let mut above = at(last.contact.load)?;
+    if above.greatest.value < yield_stress {
+        return Ok(None);
+    }
+    let mut below: Option<FirstYield> = None;
+    for _ in 0..TRIALS {
+        let over = above.greatest.value / yield_stress;
+        if over - 1.0 <= FirstYield::TOLERANCE {
+            break;
+        }
+        let high = above.state.contact.load;
+        let load = match &below {
+            // As of a sphere, with the cube of the stress.
+            None => high * over.powi(-3),
+            Some(below) => between(below, &above, yield_stress),
+        };
+        let found = at(load)?;
+        if found.greatest.value < yield_stress {
+            let is_there = found.greatest.value >= (1.0 - FirstYield::TOLERANCE) * yield_stress;
+            if is_there {
+                return Ok(Some(found));
+            }
+            below = Some(found);
+        } else {
+            above = found;
+        }
+    }
+    Ok(Some(above))
 }
 
 /// A load between two, by a power law through both stresses, not closer to either than a tenth of their logarithms'

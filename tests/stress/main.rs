@@ -3,6 +3,7 @@
 
 mod equilibrium;
 mod layers;
+mod materials;
 mod periodic;
 mod points;
 mod refusals;

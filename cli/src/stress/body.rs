@@ -26,11 +26,14 @@ pub(super) struct Body {
     pub(super) name: &'static str,
     pub(super) below: Subsurface,
     pub(super) survey: Survey,
-    pub(super) yielding: Option<Yielding>,
+    /// Of each material whose yield stress is known.
+    pub(super) yielding: Vec<Yielding>,
 }
 
-/// Its yield stress \[Pa\], and the state of the path at which it is reached.
+/// A material, its yield stress \[Pa\], and the state of the path at which it is reached.
 pub(super) struct Yielding {
+    /// Which of several it is, in words.
+    pub(super) material: Option<String>,
     pub(super) stress: f64,
     pub(super) first: Option<FirstYield>,
 }
@@ -59,8 +62,8 @@ impl<'a> Moment<'a> {
 
     /// The bodies that are asked for.
     pub(super) fn bodies(&mut self, options: &Options) -> Result<Vec<Body>, Failure> {
-        let own = options.yield_stress;
-        let other = options.against_yield_stress;
+        let own = &options.yield_stress[..];
+        let other = options.against_yield_stress.as_slice();
         let mut found = Vec::new();
         // Tractions on the other body are opposite.
         let sides = [("body", 1.0, own), ("other body", -1.0, other)];
@@ -68,7 +71,7 @@ impl<'a> Moment<'a> {
         {
             found.push(self.body(name, (ratio, sign), strength, options)?);
         }
-        if other.is_some() && found.len() < 2 {
+        if !other.is_empty() && found.len() < 2 {
             return Err(Failure::request(
                 "--against-yield-stress is that of a second body: give --material and --against",
             ));
@@ -80,7 +83,7 @@ impl<'a> Moment<'a> {
         &mut self,
         name: &'static str,
         (ratio, sign): (f64, f64),
-        strength: Option<f64>,
+        strengths: &[f64],
         options: &Options,
     ) -> Result<Body, Failure> {
         let failed = |error| Failure::new("cannot compute the stress below the surface", error);
@@ -95,14 +98,42 @@ impl<'a> Moment<'a> {
             Ok(())
         });
         let survey = survey.map_err(failed)?;
-        let yielding = match strength {
-            None => None,
-            Some(stress) => {
-                let first = below.first_yield(&mut self.path, self.record.history(), stress);
-                Some(Yielding { stress, first: first.map_err(failed)? })
+        let yielding = self.yielding(&below, strengths)?;
+        Ok(Body { name, below, survey, yielding })
+    }
+
+    /// When each material begins to yield, whose yield stresses are one for all, one for each, or not known.
+    fn yielding(
+        &mut self,
+        below: &Subsurface,
+        strengths: &[f64],
+    ) -> Result<Vec<Yielding>, Failure> {
+        let materials = below.materials();
+        let strengths = match *strengths {
+            [] => return Ok(Vec::new()),
+            [one] => vec![one; materials],
+            ref each if each.len() == materials => each.to_vec(),
+            ref others => {
+                return Err(Failure::request(format!(
+                    "--yield-stress takes one value for all materials or one for each, from the uppermost layer to the base: the body has {materials}, and {} are given",
+                    others.len()
+                )));
             }
         };
-        Ok(Body { name, below, survey, yielding })
+        let history = self.record.history();
+        let found = below
+            .first_yields(&mut self.path, history, &strengths)
+            .map_err(|error| Failure::new("cannot find the load of first yield", error))?;
+        let layers = below.layers().map_or(0, |body| body.layers().len());
+        let name = |place: usize| match () {
+            () if layers == 0 => None,
+            () if place < layers => Some(format!("layer {}", place + 1)),
+            () => Some("base".to_string()),
+        };
+        let each = found.into_iter().zip(strengths).enumerate();
+        Ok(each
+            .map(|(place, (first, stress))| Yielding { material: name(place), stress, first })
+            .collect())
     }
 }
 

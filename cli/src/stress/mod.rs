@@ -28,7 +28,7 @@ use body::Moment;
 /// The body is a homogeneous elastic half-space or has layers, under the pressures of a state of the path, and, with
 /// --friction on a homogeneous one, under tractions in proportion to them. Prints von Mises' and Tresca's equivalent
 /// stress, the greatest shear stress and the greatest tension with their places; with --yield-stress also the load of
-/// the path at which the body begins to yield.
+/// the path at which the body, or each of its layers, begins to yield.
 ///
 /// Writes stress.csv (the greatest value of each measure at each depth, for each body), stress.png, maps of von Mises'
 /// stress and of the greatest shear stress at the depths where they are greatest (von_mises_map.png, shear_map.png),
@@ -57,10 +57,10 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME|E,NU", requires = "material")]
     against: Option<Material>,
 
-    /// Yield stress of the body, of layers one for all: the load at which von Mises' stress reaches it is looked for
-    /// along the path
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
-    yield_stress: Option<f64>,
+    /// Yield stress of the body, of layers one for all or one for each from the uppermost to the base: the load at which
+    /// von Mises' stress in each material reaches it is looked for along the path
+    #[arg(long, value_name = "PA,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = PRESSURE.positive())]
+    yield_stress: Vec<f64>,
 
     /// Yield stress of the other body
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
@@ -86,8 +86,8 @@ pub(crate) struct Options {
 
     /// Print one JSON object with load, mean_pressure, friction, angle, bodies and warnings, and write files only if
     /// --out is given. Each body has poissons_ratio, von_mises, tresca, greatest_shear and greatest_tension (value,
-    /// depth, node), depths, yield_stress and first_yield (load, contact_nodes, von_mises; null if the path ends
-    /// before); SI units
+    /// depth, node), depths, and materials with yield_stress and first_yield (load, contact_nodes, von_mises; null if
+    /// the path ends before); SI units
     #[arg(long)]
     json: bool,
 

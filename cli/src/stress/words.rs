@@ -5,7 +5,7 @@ use asperity_cli::number::{counted, quantity};
 use asperity_cli::say;
 use serde_json::{Value, json};
 
-use super::body::{Body, Moment};
+use super::body::{Body, Moment, Yielding};
 
 /// Nodes in contact below which a first yield is that of the grid.
 const FEW_NODES: usize = 50;
@@ -27,17 +27,23 @@ fn of_body(body: &Body) -> Value {
     let mut value = json!({
         "poissons_ratio": body.below.poissons_ratio(),
         "depths": body.survey.depths.iter().map(|depth| depth.depth).collect::<Vec<_>>(),
-        "yield_stress": body.yielding.as_ref().map(|yielding| yielding.stress),
-        "first_yield": body.yielding.as_ref().and_then(|yielding| yielding.first).map(|first| json!({
-            "load": first.state.contact.load,
-            "contact_nodes": first.state.contact.contact_nodes,
-            "von_mises": place(first.greatest),
-        })),
+        "materials": body.yielding.iter().map(of_material).collect::<Vec<_>>(),
     });
     for measure in Measure::ALL {
         value[measure.name()] = place(body.survey.greatest(measure));
     }
     value
+}
+
+fn of_material(yielding: &Yielding) -> Value {
+    json!({
+        "yield_stress": yielding.stress,
+        "first_yield": yielding.first.map(|first| json!({
+            "load": first.state.contact.load,
+            "contact_nodes": first.state.contact.contact_nodes,
+            "von_mises": place(first.greatest),
+        })),
+    })
 }
 
 fn place(greatest: Greatest) -> Value {
@@ -87,16 +93,22 @@ pub(super) fn print(moment: &Moment, bodies: &[Body]) {
                 found.node.1
             );
         }
-        let Some(yielding) = &body.yielding else { continue };
-        let strength = quantity(yielding.stress, "Pa", 4);
-        match yielding.first {
-            Some(first) => say!(
-                "  yields first at W = {}, where von Mises' stress is {strength} at a depth of {}, with {} in contact",
-                quantity(first.state.contact.load, "N", 4),
-                quantity(first.greatest.depth, "m", 4),
-                counted(first.state.contact.contact_nodes, "node")
-            ),
-            None => say!("  does not yield on this path: von Mises' stress stays below {strength}"),
+        for Yielding { material, stress, first } in &body.yielding {
+            let who = material.as_ref().map_or(String::new(), |name| format!("{name} "));
+            let strength = quantity(*stress, "Pa", 4);
+            match first {
+                Some(first) => say!(
+                    "  {who}yields first at W = {}, where von Mises' stress is {strength} at a depth of {}, with {} in contact",
+                    quantity(first.state.contact.load, "N", 4),
+                    quantity(first.greatest.depth, "m", 4),
+                    counted(first.state.contact.contact_nodes, "node")
+                ),
+                None => {
+                    say!(
+                        "  {who}does not yield on this path: von Mises' stress stays below {strength}"
+                    );
+                }
+            }
         }
     }
 }
@@ -120,13 +132,15 @@ pub(super) fn warnings(moment: &Moment, bodies: &[Body]) -> Vec<String> {
                 quantity(greatest.depth, "m", 3)
             ));
         }
-        let first = body.yielding.as_ref().and_then(|yielding| yielding.first);
-        if let Some(first) = first.filter(|first| first.state.contact.contact_nodes < FEW_NODES) {
-            warnings.push(format!(
-                "the {} yields with {} in contact: below some {FEW_NODES} of them the load of first yield is that of the grid",
-                body.name,
-                counted(first.state.contact.contact_nodes, "node")
-            ));
+        for Yielding { material, first, .. } in &body.yielding {
+            if let Some(first) = first.filter(|first| first.state.contact.contact_nodes < FEW_NODES)
+            {
+                warnings.push(format!(
+                    "the {} yields with {} in contact: below some {FEW_NODES} of them the load of first yield is that of the grid",
+                    material.as_deref().unwrap_or(body.name),
+                    counted(first.state.contact.contact_nodes, "node")
+                ));
+            }
         }
     }
     warnings

@@ -19,6 +19,9 @@ use asperity_studies::study;
 use clap::Parser;
 use nalgebra::DMatrix;
 
+/// What tamaas found: `peers/stress.py`.
+const TAMAAS: &str = include_str!("peers/stress.csv");
+
 const POISSON: f64 = 0.3;
 /// Cells in the radius, or in half the width, of the contact.
 const CELLS: [usize; 2] = [8, 64];
@@ -43,7 +46,8 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error: Error| Failure::new("cannot compute stresses", error);
     let mut text = String::from("## Stress below the surface\n\nStudy `stress`.\n");
-    meshes(&mut text).map_err(failed)?;
+    let lines = tamaas()?;
+    meshes(&mut text, &lines).map_err(failed)?;
     waves(&mut text).map_err(failed)?;
     let section = Section { study: "stress", text: &text, pictures: &[] };
     section.show(options.report.as_deref())?;
@@ -83,7 +87,51 @@ struct Row {
     errors: Vec<f64>,
 }
 
-fn meshes(text: &mut String) -> Result<(), Error> {
+/// A node at a depth by tamaas: version, nodes along a side, depth, node, and the components.
+type Line = (String, usize, f64, usize, usize, f64, f64, f64, f64, f64, f64);
+
+fn tamaas() -> Result<Vec<Line>, Failure> {
+    let lines = csv::Reader::from_reader(TAMAAS.as_bytes()).into_deserialize().collect();
+    lines.map_err(|error: csv::Error| Failure::new("cannot read stress.csv", error))
+}
+
+/// Hertz's pressure that repeats every 4 radii, smoothed as in `peers/stress.py`.
+fn of_periodic_sphere(n: usize) -> DMatrix<f64> {
+    let at = |i: usize| (i as f64 - (n / 2) as f64) * 4.0 / n as f64;
+    let sharp =
+        DMatrix::from_fn(n, n, |ix, iy| (1.0 - at(ix) * at(ix) - at(iy) * at(iy)).max(0.0).sqrt());
+    let around = |i: usize| [(0.25, (i + n - 1) % n), (0.5, i), (0.25, (i + 1) % n)];
+    DMatrix::from_fn(n, n, |ix, iy| {
+        let pairs = around(ix).into_iter().flat_map(|x| around(iy).map(|y| (x, y)));
+        pairs.map(|((a, ix), (b, iy))| a * b * sharp[(ix, iy)]).sum()
+    })
+}
+
+/// The greatest difference from tamaas of all components, for the waves of the grid and for uniform cells.
+fn beside_tamaas(lines: &[Line], cells: usize) -> Result<[f64; 2], Error> {
+    let n = 4 * cells;
+    let (grid, pressure) = (Grid::square(n, 4.0)?, of_periodic_sphere(n));
+    let bodies = [
+        Subsurface::of(&Spectral::new(grid, 1.0)?, POISSON)?,
+        Subsurface::new(grid, Boundary::Periodic, POISSON)?,
+    ];
+    let mut differences = [0.0_f64; 2];
+    for (body, difference) in bodies.iter().zip(&mut differences) {
+        let own: Vec<&Line> = lines.iter().filter(|line| line.1 == n).collect();
+        for depth in own.chunk_by(|a, b| a.2 == b.2) {
+            let field = body.at_depth(&pressure, depth[0].2)?;
+            for &&(_, _, _, ix, iy, xx, yy, zz, yz, xz, xy) in depth {
+                let found = field.components().map(|component| component[(ix, iy)]);
+                for (found, theirs) in found.into_iter().zip([xx, yy, zz, yz, xz, xy]) {
+                    *difference = difference.max((found - theirs).abs());
+                }
+            }
+        }
+    }
+    Ok(differences)
+}
+
+fn meshes(text: &mut String, lines: &[Line]) -> Result<(), Error> {
     let mut rows = [
         "sphere, axis at 0.48 a: σrr, σzz",
         "sphere, greatest von Mises' stress, 0.6200 p₀",
@@ -94,6 +142,8 @@ fn meshes(text: &mut String) -> Result<(), Error> {
         "cylinder, 0.786 a below the middle: σxx, σzz",
         "cylinder, greatest shear, 0.3003 p₀",
         "cylinder, its depth, 0.786 a",
+        "tamaas, waves of the grid: all components",
+        "tamaas, uniform cells: all components",
     ]
     .map(|what| Row { what, errors: Vec::new() });
     for cells in CELLS {
@@ -127,6 +177,7 @@ fn meshes(text: &mut String) -> Result<(), Error> {
         let (side, down) = (2.0 * z - (1.0 + 2.0 * z * z) / root, -1.0 / root);
         let rolling = roller.survey(&load, None)?.greatest(Measure::GreatestShear);
         let (line_exact, line_place) = line_maximum();
+        let [of_waves, of_cells] = beside_tamaas(lines, cells)?;
         let found = [
             (axis.xx - radial).hypot(axis.zz + 1.0 / (1.0 + 0.48 * 0.48)),
             von_mises.value - exact,
@@ -137,6 +188,8 @@ fn meshes(text: &mut String) -> Result<(), Error> {
             (below.xx - side).hypot(below.zz - down),
             rolling.value - line_exact,
             rolling.depth - line_place,
+            of_waves,
+            of_cells,
         ];
         rows.iter_mut().zip(found).for_each(|(row, error)| row.errors.push(error.abs()));
     }
@@ -154,9 +207,17 @@ fn meshes(text: &mut String) -> Result<(), Error> {
         for error in errors {
             let _ = write!(text, " {error:.1e} |");
         }
+        // Roundings have no order.
         let order = (errors[0] / errors[1]).log2() / 3.0;
-        let _ = writeln!(text, " {order:.1} |");
+        let order = if errors[0] < 1e-12 { "–".to_string() } else { format!("{order:.1}") };
+        let _ = writeln!(text, " {order} |");
     }
+    let version = lines.first().map_or("", |line| &line.0);
+    let _ = writeln!(
+        text,
+        "\nThe last two rows: tamaas {version} (`boussinesq_gradient` and `hooke`, `peers/stress.py`) has the waves of \
+         the grid, as `Spectral`; the sphere's pressure repeats every 4a, at 27 places between 0.25 and 0.75 a deep."
+    );
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Solves the problems of the studies `peers` and `yielding` with other programs and writes `peers.csv`, `waves.csv` and
-# `hardness.csv`:
+# Solves the problems of the studies `peers`, `yielding` and `stress` with other programs and writes `peers.csv`,
+# `waves.csv`, `hardness.csv` and `stress.csv`:
 #
 #     studies/src/bin/peers/peers.sh [DIR]
 #
@@ -18,4 +18,5 @@ fi
 "$dir/venv/bin/pip" install --quiet --requirement "$here/requirements.txt" \
     --config-settings=cmake.define.FETCHCONTENT_SOURCE_DIR_EIGEN3_SRC=/usr/include/eigen3
 "$dir/venv/bin/python" "$here/hardness.py" target/release/asperity "$here/hardness.csv"
+"$dir/venv/bin/python" "$here/stress.py" "$here/stress.csv"
 "$dir/venv/bin/python" "$here/peers.py" "$dir" "$here/peers.csv" "$here/waves.csv"
