@@ -100,6 +100,11 @@ impl Response {
         if x == y { Parity::Even } else { Parity::Odd }
     }
 
+    /// Whether an exchange of x and y changes nothing but the names of components.
+    pub(super) fn is_symmetric(&self) -> bool {
+        self.load == Load::Normal
+    }
+
     /// The same with x and y exchanged; components are exchanged by [`transposed`].
     pub(super) fn transposed(&self) -> Self {
         let load = match self.load {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::cells::Stresses;
 use super::depth::Depth;
 use super::lanes::{LANES, Lanes, each};
-use super::load::{COMPONENTS, Response};
+use super::load::{COMPONENTS, Response, transposed};
 use super::rectangle::WaveSums;
 use crate::Grid;
 use crate::kernel::{Below, sinc};
@@ -42,12 +42,26 @@ struct Neighbours {
     least: f64,
 }
 
-/// Wave vectors, their lengths, and what each wave has of a load on the nodes.
+/// Wave vectors side by side, their lengths, and what each wave has of a load on the nodes.
 struct Waves {
     qx: f64,
     qy: Lanes,
     q: Lanes,
     weight: Lanes,
+}
+
+impl Waves {
+    #[inline(always)]
+    fn new((qx, weight): Wave, along_y: &Neighbours) -> Self {
+        let qy = along_y.q;
+        Self {
+            qx,
+            qy,
+            // The uniform wave has no direction, and an answer of its own.
+            q: each(|k| (qx * qx + qy[k] * qy[k]).sqrt().max(f64::MIN_POSITIVE)),
+            weight: each(|k| weight * along_y.weight[k]),
+        }
+    }
 }
 
 /// The waves along a side that look like k of n on the grid, up to the wave number `most`: as many for each k.
@@ -67,22 +81,22 @@ impl Spectrum {
     pub(super) fn new(grid: &Grid, between: Between, depth: &Depth, response: &Response) -> Self {
         // On the surface all waves count; it is never asked for of cells.
         let most = FADED / depth.least();
-        Self::summed((grid, between), most, response, response.uniform(), |waves| {
-            let mut sums = WaveSums::default();
+        let add = |sums: &mut WaveSums, x: Wave, y: &Neighbours| {
             vectorized(
                 #[inline(always)]
                 || {
-                    for Waves { qx, qy, q, weight } in waves {
-                        let (plain, deep) = depth.of_waves(&q);
-                        sums.add(
-                            (&each(|k| qx / q[k]), &each(|k| qy[k] / q[k])),
-                            (&each(|k| weight[k] * plain[k]), &each(|k| weight[k] * deep[k])),
-                        );
-                    }
+                    let Waves { qx, qy, q, weight } = Waves::new(x, y);
+                    let (plain, deep) = depth.of_waves(&q);
+                    let per_q = each(|k| 1.0 / q[k]);
+                    sums.add(
+                        (&each(|k| qx * per_q[k]), &each(|k| qy[k] * per_q[k])),
+                        (&each(|k| weight[k] * plain[k]), &each(|k| weight[k] * deep[k])),
+                    );
                 },
             );
-            std::array::from_fn(|lane| response.of(&sums.values(lane)))
-        })
+        };
+        let of = |sums: &WaveSums, lane: usize| response.of(&sums.values(lane));
+        Self::summed((grid, between), most, (response, response.uniform()), add, of)
     }
 
     /// Of layers.
@@ -93,18 +107,17 @@ impl Spectrum {
         response: &Response,
     ) -> Self {
         let most = FADED / below.scale();
-        Self::summed((grid, between), most, response, below.uniform(), |waves| {
-            let mut sums = [[0.0; COMPONENTS]; LANES];
-            for Waves { qx, qy, q, weight } in waves {
-                for (k, sum) in sums.iter_mut().enumerate() {
-                    if between == Between::Waves || q[k] < most {
-                        let found = below.of_wave(q[k], (qx / q[k], qy[k] / q[k]));
-                        super::cells::add(sum, weight[k], &found);
-                    }
+        let add = |sums: &mut [Stresses; LANES], x: Wave, y: &Neighbours| {
+            let Waves { qx, qy, q, weight } = Waves::new(x, y);
+            for (k, sum) in sums.iter_mut().enumerate() {
+                if between == Between::Waves || q[k] < most {
+                    let found = below.of_wave(q[k], (qx / q[k], qy[k] / q[k]));
+                    super::cells::add(sum, weight[k], &found);
                 }
             }
-            sums
-        })
+        };
+        let of = |sums: &[Stresses; LANES], lane: usize| sums[lane];
+        Self::summed((grid, between), most, (response, below.uniform()), add, of)
     }
 
     /// The sum of two.
@@ -114,14 +127,14 @@ impl Spectrum {
         self
     }
 
-    /// From the waves that look like each wave of the grid, of which `sum` is given all that are not beyond the wave
-    /// number `most`, and some that are.
-    fn summed(
+    /// From the waves that look like each wave of the grid: `add` is given all that are not beyond the wave number
+    /// `most`, and some that are, and `of` tells the stresses from a sum.
+    fn summed<S: Default>(
         (grid, between): (&Grid, Between),
         most: f64,
-        response: &Response,
-        uniform: Stresses,
-        sum: impl Fn(&mut dyn Iterator<Item = Waves>) -> [Stresses; LANES] + Sync + Send,
+        (response, uniform): (&Response, Stresses),
+        add: impl Fn(&mut S, Wave, &Neighbours) + Sync + Send,
+        of: impl Fn(&S, usize) -> Stresses + Sync + Send,
     ) -> Self {
         let shape = grid.shape();
         let (nx, ny) = shape;
@@ -139,40 +152,55 @@ impl Spectrum {
             (0..lanes[0].len()).map(of).collect()
         };
         let along_y: Vec<Vec<Neighbours>> = (0..height).step_by(LANES).map(neighbours).collect();
+        let is_symmetric = nx == ny && grid.dx() == grid.dy() && response.is_symmetric();
         let mut values = vec![[0.0; COMPONENTS]; (nx / 2 + 1) * height];
         for_each_chunk(&mut values, height, |kx, column| {
             let mut along_x = alike(kx, (nx, grid.dx()), between, most);
             // Those that a cell averages to nothing are left out.
             along_x.retain(|(_, weight)| *weight != 0.0);
-            for (values, along_y) in column.chunks_mut(LANES).zip(&along_y) {
-                let pairs = along_y.iter().flat_map(|y| along_x.iter().map(move |x| (x, y)));
-                let mut waves = pairs.filter_map(|(&(qx, weight), y)| {
-                    let counts = between == Between::Waves || qx * qx + y.least < most * most;
-                    counts.then(|| Waves {
-                        qx,
-                        qy: y.q,
-                        // The uniform wave has no direction, and an answer of its own.
-                        q: each(|k| (qx * qx + y.q[k] * y.q[k]).sqrt().max(f64::MIN_POSITIVE)),
-                        weight: each(|k| weight * y.weight[k]),
-                    })
-                });
-                let sums = sum(&mut waves);
-                values.copy_from_slice(&sums[..values.len()]);
-            }
-            if kx == 0 {
-                column[0] = uniform;
-            }
-            // The shortest wave of an even number of nodes runs both ways: what depends on the way is nothing.
-            for (ky, value) in column.iter_mut().enumerate() {
-                for (c, value) in value.iter_mut().enumerate() {
-                    let (x, y) = response.signs(c);
-                    if (x < 0.0 && 2 * kx == nx) || (y < 0.0 && 2 * ky == ny) {
-                        *value = 0.0;
+            let skipped = if is_symmetric { kx / LANES } else { 0 };
+            for (values, along_y) in column.chunks_mut(LANES).zip(&along_y).skip(skipped) {
+                let mut sum = S::default();
+                for y in along_y {
+                    for &(qx, weight) in &along_x {
+                        if between == Between::Waves || qx * qx + y.least < most * most {
+                            add(&mut sum, (qx, weight), y);
+                        }
                     }
+                }
+                for (lane, value) in values.iter_mut().enumerate() {
+                    *value = of(&sum, lane);
                 }
             }
         });
-        Self { shape, values }
+        if is_symmetric {
+            for kx in 1..height {
+                for ky in 0..kx {
+                    let other = values[kx + height * ky];
+                    values[ky + height * kx] = std::array::from_fn(|c| other[transposed(c)]);
+                }
+            }
+        }
+        values[0] = uniform;
+        let mut spectrum = Self { shape, values };
+        spectrum.silence(response);
+        spectrum
+    }
+
+    /// The shortest wave of an even number of nodes runs both ways: what depends on the way is nothing.
+    fn silence(&mut self, response: &Response) {
+        let (nx, ny) = self.shape;
+        let height = ny / 2 + 1;
+        for c in 0..COMPONENTS {
+            let (x, y) = response.signs(c);
+            if x < 0.0 && nx.is_multiple_of(2) {
+                let last = self.values.len() - height;
+                self.values[last..].iter_mut().for_each(|value| value[c] = 0.0);
+            }
+            if y < 0.0 && ny.is_multiple_of(2) {
+                self.values.chunks_mut(height).for_each(|column| column[height - 1][c] = 0.0);
+            }
+        }
     }
 
     /// Takes out the waves that do not vary along x.

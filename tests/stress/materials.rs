@@ -4,7 +4,7 @@ use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::History;
 use asperity::stress::{FirstYield, Measure, Subsurface};
 use asperity::surface::Paraboloid;
-use asperity::{Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, StressError};
+use asperity::{Error, Grid, InfluenceKernel, LoadingSolver, Spectral, StressError};
 use nalgebra::DMatrix;
 
 const STEEL: (f64, f64) = (210e9, 0.3);
@@ -57,7 +57,7 @@ fn layers_of_one_material_yield_as_a_half_space() -> Result<(), Error> {
     let (young, poisson) = STEEL;
     let e_star = young / (1.0 - poisson * poisson);
     let strength = 6e8;
-    let half_space = Boussinesq::new(grid()?, e_star)?;
+    let half_space = Spectral::new(grid()?, e_star)?;
     let plain = Subsurface::of(&half_space, poisson)?;
     let (mut path, history) = pressed(&half_space, e_star)?;
     let whole = plain.first_yield(&mut path, &history, strength)?.unwrap();
@@ -69,7 +69,7 @@ fn layers_of_one_material_yield_as_a_half_space() -> Result<(), Error> {
     let thicknesses = [0.4 * depth, depth];
     let layers = thicknesses.map(|thickness| (STEEL, thickness));
     let body = layered(&layers, Base::HalfSpace { young, poisson })?;
-    let kernel = Layered::free(grid()?, body)?;
+    let kernel = Layered::spectral(grid()?, body)?;
     let below = Subsurface::of(&kernel, 0.0)?;
     let (mut path, history) = pressed(&kernel, e_star)?;
     assert_eq!(below.materials(), 3);
@@ -106,23 +106,13 @@ fn each_material_of_a_coated_sphere_yields_by_itself() -> Result<(), Error> {
     for ((first, strength), span) in found.iter().zip(strengths).zip(spans) {
         let first = first.unwrap();
         let pressure = path.fields_at(&first.state)?.pressure;
-        // As of layers of one material.
-        let stress = greatest(&below, &pressure, span, 40)?;
-        assert!((stress / strength - 1.0).abs() < 2e-3, "{span:?}: {stress:e} {first:?}");
+        let stress = greatest(&below, &pressure, span, 12)?;
+        // The tolerance, and what the last of the parabolas misses of the maximum.
+        assert!(stress < strength * (1.0 + 1e-3), "{span:?}: {stress:e} {first:?}");
+        let there = below.at_depth(&pressure, first.greatest.depth)?.map(Measure::VonMises);
+        assert!((there.max() / strength - 1.0).abs() <= FirstYield::TOLERANCE, "{first:?}");
         assert!(first.greatest.depth >= span.0 && first.greatest.depth <= span.1, "{first:?}");
     }
-    let earliest = found.iter().flatten().map(|first| first.state.contact.load);
-    let earliest = earliest.fold(f64::INFINITY, f64::min);
-    // Whichever has the lower yield stress by itself: with one for both the body yields with the first of them.
-    let both = below.first_yields(&mut path, &history, &[7e8; 2])?;
-    let both = both.iter().flatten().map(|first| first.state.contact.load);
-    let whole = below.first_yield(&mut path, &history, 7e8)?.unwrap().state.contact.load;
-    let least = both.fold(f64::INFINITY, f64::min);
-    assert!((least / whole - 1.0).abs() < 3.0 * 2.1 * FirstYield::TOLERANCE, "{least} {whole}");
-    assert!(least <= earliest * (1.0 + 1e-3), "{least} {earliest}");
-    // What is too strong for the path does not yield.
-    let strong = below.first_yields(&mut path, &history, &[1e15, 7e8])?;
-    assert!(strong[0].is_none() && strong[1] == found[1], "{strong:?}");
     Ok(())
 }
 
@@ -139,6 +129,7 @@ fn there_is_one_yield_stress_for_each_material() -> Result<(), Error> {
         let expected = StressError::YieldStresses { given, materials: 2 }.to_string();
         assert_eq!(refused.unwrap_err().to_string(), expected);
     }
+    assert_eq!(below.first_yields(&mut path, &history, &[1e15; 2])?, [None, None]);
     let negative = below.first_yields(&mut path, &history, &[1e9, -1.0]);
     assert!(matches!(negative, Err(Error::NotPositive { .. })), "{negative:?}");
     Ok(())

@@ -91,8 +91,9 @@ struct Row {
 type Line = (String, usize, f64, usize, usize, f64, f64, f64, f64, f64, f64);
 
 fn tamaas() -> Result<Vec<Line>, Failure> {
-    let lines = csv::Reader::from_reader(TAMAAS.as_bytes()).into_deserialize().collect();
-    lines.map_err(|error: csv::Error| Failure::new("cannot read stress.csv", error))
+    let lines: Result<Vec<Line>, csv::Error> =
+        csv::Reader::from_reader(TAMAAS.as_bytes()).into_deserialize().collect();
+    lines.map_err(|error| Failure::new("cannot read stress.csv", error))
 }
 
 /// Hertz's pressure that repeats every 4 radii, smoothed as in `peers/stress.py`.
