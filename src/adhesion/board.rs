@@ -161,21 +161,15 @@ impl Board {
 
     /// When something happens next, to which row: of those that tie the one of the lowest node.
     pub(super) fn next(&self) -> Option<(f64, usize)> {
-        let times = (0..self.size()).filter_map(|place| {
-            let left = self.left(place)?;
-            Some((left.time(), place))
+        let lefts = |place: usize| Some((place, self.left(place)?));
+        let first = (0..self.size()).filter_map(lefts).map(|(_, left)| left.time());
+        let first = first.reduce(f64::min)?;
+        let tied = (0..self.size()).filter_map(lefts).filter(|(_, left)| {
+            // Most come much later, without a division.
+            left.distance - first * left.rate <= TIE * left.unit || left.time() == first
         });
-        let times: Vec<(f64, usize)> = times.collect();
-        let &(first, place) = times.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let tied = times.iter().filter(|&&(time, place)| {
-            time == first
-                || self.left(place).is_some_and(|left| {
-                    let Left { distance, rate, unit } = left;
-                    distance - first * rate <= TIE * unit
-                })
-        });
-        let lowest = tied.map(|&(_, place)| place).min_by_key(|&place| self.rows[place].node);
-        Some((first, lowest.unwrap_or(place)))
+        let lowest = tied.map(|(place, _)| place).min_by_key(|&place| self.rows[place].node)?;
+        Some((first, lowest))
     }
 
     fn left(&self, place: usize) -> Option<Left> {
