@@ -1,6 +1,6 @@
 //! What events cost with a factor and without, and when the rest of a path is cheaper without.
 
-use super::tuning::{FACTOR, HANDOVER, ITERATIONS, RELEASE, SAVED, STEP, WINDOW};
+use super::tuning::{CHECKED, FACTOR, HANDOVER, ITERATIONS, RELEASE, SAVED, STEP, WINDOW};
 
 /// Seconds that an event with a factor of so many nodes takes on a machine with two cores: for telling how long a path
 /// will take.
@@ -51,7 +51,7 @@ pub(super) struct Rest {
     /// Nodes that a factor holds now, and at the end.
     factor: [usize; 2],
     events: f64,
-    /// Where each event has a solution of its own with a factor: what part of them are nodes that leave.
+    /// Where nodes may leave: what part of the events do.
     releases: Option<f64>,
 }
 
@@ -67,8 +67,8 @@ impl Rest {
         Self { nodes, factor: [contact; 2], events: events as f64, releases: None }
     }
 
-    /// The same where a factor has no windows, and nodes leave in this part of all events: half at most,
-    /// since each of them has touched.
+    /// The same where windows are checked at each event and nodes leave in this part of all events: half at most, since
+    /// each of them has touched.
     pub(super) fn with_releases(self, part: f64) -> Self {
         Self { releases: Some(part.min(0.5)), ..self }
     }
@@ -89,10 +89,13 @@ impl Rest {
     fn seconds_with_factor(self) -> f64 {
         let [from, to] = self.factor.map(|nodes| nodes as f64);
         let square = (from * from + from * to + to * to) / 3.0;
-        let event = if self.releases.is_some() {
-            STEP[0] * square + STEP[1] * self.nodes as f64
-        } else {
-            FACTOR * square
+        let event = match self.releases {
+            None => FACTOR * square,
+            Some(part) => {
+                let [solution, convolution] = STEP;
+                let release = solution * square + convolution * self.nodes as f64;
+                CHECKED * FACTOR * square + part * release
+            }
         };
         self.events * event
     }
