@@ -174,12 +174,12 @@ mod tests {
         let rest = |contact, events| Rest::steady(256 * 256, contact, events).is_cheaper_without();
         assert_eq!([1000, 2000, 10_000].map(|events| rest(8000, events)), [false, true, true]);
         assert!(!rest(6000, usize::MAX));
-        // With a solution for each, an event takes 3.3 ms and more.
-        let rest = Rest::steady(256 * 256, 100, 1000);
+        // Where nodes may leave, 1.6 ms instead of 0.64, and 0.135 s for each that does; 0.131 s without a factor. Four
+        // fifths of that are less than what iterations take, the hand-over included, from one event in 29.5 on.
+        let rest = Rest::steady(256 * 256, 8000, 2000);
         let with = |part| rest.with_releases(part);
-        let rests = [rest, with(0.0), with(0.016), with(0.017), with(f64::INFINITY)];
-        // A release takes 0.13 s, and iterations may take 2.54 ms an event: 2.16 ms of one in 61.
+        let rests = [rest, with(0.0), with(0.033), with(0.035), with(f64::INFINITY)];
         let are_cheaper = rests.map(Rest::is_cheaper_without);
-        assert_eq!(are_cheaper, [false, true, true, false, false]);
+        assert_eq!(are_cheaper, [true, true, true, false, false]);
     }
 }

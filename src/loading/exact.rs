@@ -163,9 +163,9 @@ impl Exact {
             return Err(run.not_finite());
         }
         let unwatched = self.ranking[size..].iter().map(|&(_, node)| node);
-        let at_start = AtStart::of(run, relief, unwatched);
+        let at_start = AtStart::of(run, &self.window, relief, unwatched)?;
         let tension = TOLERANCE * run.greatest_pressure(run.scalars.approach() + self.end());
-        let stand = at_start.before_release(&self.window, tension);
+        let stand = at_start.before_release(&*self.window.touched_factor()?, tension);
         self.take_back(run, stand);
         Ok(Some(at_start))
     }
@@ -361,7 +361,7 @@ impl Exact {
             run.renew_field(updater, end)?;
             let overlap = TOLERANCE * (run.problem.greatest_gap() + end);
             let events = self.window.events().len();
-            let stand = at_start.before_others(run, &self.window, overlap);
+            let stand = at_start.before_others(run, (&self.window, events), overlap);
             if stand < events {
                 self.window.truncate(stand);
                 run.timings.taken_back += events - stand;
@@ -384,7 +384,12 @@ impl Exact {
 
     /// Drops events that a contradiction at the end of the window says were none, `until` before the end; returns how
     /// many.
-    fn drop_later(&mut self, run: &mut LoadingRun, until: Option<f64>, fewest: &mut usize) -> usize {
+    fn drop_later(
+        &mut self,
+        run: &mut LoadingRun,
+        until: Option<f64>,
+        fewest: &mut usize,
+    ) -> usize {
         let events = self.window.events();
         let Some(until) = until.filter(|_| events.len() > 1) else {
             return 0;
@@ -413,7 +418,8 @@ impl Exact {
         // Pressures and rates of nodes that touched, gaps and their rates of nodes that yielded.
         let mut pressed: Vec<(usize, [f64; 2])> = Vec::new();
         let mut values = vec![[0.0; 2]; nodes];
-        for (event, answer) in self.window.events().iter().zip(self.window.answers(usize::MAX, end)) {
+        for (event, answer) in self.window.events().iter().zip(self.window.answers(usize::MAX, end))
+        {
             let node = self.window.node(event.position);
             if event.kind == ContactEvent::Touch {
                 let yields = self.window.events().iter().any(|other| {

@@ -1,138 +1,236 @@
 //! Windows with a factor on bodies on which nodes may leave: until one does.
 //!
 //! Nodes only touch in such a window. Between two events every pressure and every gap is a line, so that its values at
-//! the events tell all. With the pressures q of the nodes J that have touched, the pressures of the contact I, and the
-//! gap of a node o that is neither watched nor in contact, are
+//! the events tell all. With the factor R of the Schur complement of the nodes J that touch at the times tⱼ, and what
+//! they close by as the others before them are eliminated, cⱼ (t − tⱼ) at the time t, the pressures of the contact I, and
+//! the gap of a node o that is neither watched nor in contact, are
 //!
 //! ```text
-//! p(t) = p(0) + t p'(0) − A q(t),    g(t) = g(0) + t g'(0) + (C_oJ − C_oI A) q(t),    A = C_II⁻¹ C_IJ
+//! p(t) = p(0) + t p'(0) − Σⱼ Bⱼ cⱼ (t − tⱼ),    B = C_II⁻¹ C_IJ R⁻ᵀ
+//! g(t) = g(0) + t g'(0) + Σⱼ wⱼ cⱼ (t − tⱼ),    w = R⁻¹ C_Jo − Bᵀ C_Io
 //! ```
 //!
-//! A window ends with the last event before a pressure falls to zero. Of most nodes a bound says that they stay open:
-//! with T the end of the window, and C(0, 0) no less than any pivot,
+//! with sums h(t) over the events so far. A window ends with the last event before a pressure falls to zero. Of most nodes
+//! a bound says that they stay open, for h is known at the end T, and the squares of w sum to S_oo at most, which is no
+//! greater than C(0, 0): with any α and β
 //!
 //! ```text
-//! |g(t) − (1 − t/T) g(0) − t/T g(T)|² ≤ C(0, 0) δqᵀ S δq,    δq = q(t) − t/T q(T)
+//! |h(t) − α h(T) − β h'(T)|² ≤ C(0, 0) Σⱼ cⱼ² ((t − tⱼ)₊ − α (T − tⱼ) − β)²
 //! ```
 
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
 
+use crate::Error;
 use crate::loading::gap_field::GapLine;
 use crate::loading::run::LoadingRun;
-use crate::loading::window::{Window, WindowEvent};
-use crate::updater::Solution;
+use crate::loading::tuning::{LEAST_DETERMINANT, LEAST_RATE};
+use crate::loading::window::Window;
+use crate::parallel;
+use crate::updater::{Solution, WindowFactor};
 
-/// Pressures and gaps when a window begins.
+/// Gaps that are looked at together: at the speed of a matrix product.
+const AT_ONCE: usize = 96;
+
+/// Pressures and gaps when a window begins, and how its events change them.
 pub(super) struct AtStart {
     /// Of the contact.
     solution: Solution,
     /// Of the nodes that are not watched.
     gaps: Vec<(usize, GapLine)>,
-    /// What pressures on the nodes of the first events take off the contact.
+    /// Times of the events, and what the gaps there close by.
+    times: Vec<f64>,
+    closing: Vec<f64>,
+    /// R and B.
+    own: Mat<f64>,
     relief: DMatrix<f64>,
 }
 
 impl AtStart {
+    /// From C_II⁻¹ C_IJ for the nodes of the events.
     pub(super) fn of(
         run: &LoadingRun,
-        relief: DMatrix<f64>,
+        window: &Window,
+        mut relief: DMatrix<f64>,
         unwatched: impl Iterator<Item = usize>,
-    ) -> Self {
-        let gaps = unwatched.map(|node| (node, run.line(node))).collect();
-        Self { solution: run.field.solution().clone(), gaps, relief }
+    ) -> Result<Self, Error> {
+        let factor = window.touched_factor()?;
+        let (nodes, events) = relief.shape();
+        let own = Mat::from_fn(events, events, |i, t| {
+            if t <= i { factor.column(t)[factor.positions()[i]] } else { 0.0 }
+        });
+        let columns = MatMut::from_column_major_slice_mut(relief.as_mut_slice(), nodes, events);
+        solve_lower_triangular_in_place(own.as_ref(), columns.transpose_mut(), Par::Seq);
+        Ok(Self {
+            solution: run.field.solution().clone(),
+            gaps: unwatched.map(|node| (node, run.line(node))).collect(),
+            times: window.events().iter().map(|event| event.time).collect(),
+            closing: window.reduced(usize::MAX, 0.0).into_iter().map(|[_, rate]| rate).collect(),
+            own,
+            relief,
+        })
     }
 
-    /// How many events of a window come before a pressure falls below `-tension`, on the contact or on a node that has
-    /// touched: the first at least.
-    pub(super) fn before_release(&self, window: &Window, tension: f64) -> usize {
-        let events = window.events();
-        let mut stand = events.len();
-        let mut touched: Vec<Vec<f64>> = Vec::with_capacity(stand);
-        for (event, count) in events.iter().zip(0..) {
-            let pressures = window.answers(count, event.time);
-            let pressures: Vec<f64> = pressures.into_iter().map(|[pressure, _]| pressure).collect();
-            if count > 0 && pressures.iter().any(|pressure| *pressure < -tension) {
-                stand = count;
-                break;
-            }
-            touched.push(pressures);
-        }
-        // What is taken off each node at most.
-        let mut most = vec![0.0; self.relief.nrows()];
-        for (j, column) in self.relief.column_iter().enumerate() {
-            let pressures = touched.iter().filter_map(|pressures| pressures.get(j));
-            let greatest = pressures.copied().fold(0.0, f64::max);
-            for (most, taken) in most.iter_mut().zip(column.iter()) {
-                *most += greatest * taken.max(0.0);
-            }
-        }
+    /// How many events come before a pressure falls to zero, on the contact or on a node that has touched: the first at
+    /// least. Zero are pressures up to `tension`, so that a release which ties with a touch is none of the window's.
+    pub(super) fn before_release(&self, factor: &WindowFactor, tension: f64) -> usize {
         let Solution { pressure, rate } = &self.solution;
-        let [first, last] = [events.first(), events.last()].map(|e| e.map_or(0.0, |e| e.time));
-        for (i, most) in most.into_iter().enumerate() {
-            let least = (pressure[i] + first * rate[i]).min(pressure[i] + last * rate[i]);
-            if least - most >= -tension {
-                continue;
+        let slowest = -LEAST_RATE * rate.iter().copied().fold(0.0, f64::max);
+        let has_left = |p: f64, rate: f64| p < -tension || p <= tension && rate < slowest;
+        let first = self.times.first().copied().unwrap_or_default();
+        let lines = pressure.iter().zip(rate).map(|(p, rate)| [p + first * rate, *rate]);
+        let mut contact: Vec<[f64; 2]> = lines.collect();
+        let mut touched: Vec<[f64; 2]> = Vec::new();
+        for (k, times) in (1..).zip(self.times.windows(2)) {
+            let span = times[1] - times[0];
+            let closing = self.closing[k - 1];
+            let mut left = false;
+            for ([p, rate], relief) in contact.iter_mut().zip(self.relief.column(k - 1).iter()) {
+                *rate -= closing * relief;
+                *p += span * *rate;
+                left |= has_left(*p, *rate);
             }
-            let row: Vec<f64> = self.relief.row(i).iter().copied().collect();
-            let falls = |count: &usize| {
-                let taken: f64 = row.iter().zip(&touched[*count]).map(|(a, q)| a * q).sum();
-                pressure[i] + events[*count].time * rate[i] - taken < -tension
-            };
-            stand = (1..stand.min(touched.len())).find(falls).unwrap_or(stand);
+            let mut pressed = vec![[0.0]; k];
+            pressed[k - 1] = [closing];
+            factor.solve_back(&mut pressed);
+            touched.push([0.0; 2]);
+            for ([p, rate], [more]) in touched.iter_mut().zip(pressed) {
+                *rate += more;
+                *p += span * *rate;
+                left |= has_left(*p, *rate);
+            }
+            if left {
+                return k;
+            }
         }
-        stand
+        self.times.len()
     }
 
-    /// How many events come before a node that is not watched touches, in a window that has joined and at whose end the
-    /// solution is.
-    pub(super) fn before_others(&self, run: &LoadingRun, window: &Window, overlap: f64) -> usize {
-        let events = window.events();
-        let (mut stand, span) = (events.len(), events.last().map_or(0.0, |event| event.time));
-        if stand < 2 {
-            return stand;
-        }
+    /// How many of the first `count` events come before a node that is not watched touches, when these have joined and the
+    /// solution is that at the last of them.
+    pub(super) fn before_others(
+        &self,
+        run: &LoadingRun,
+        (window, count): (&Window, usize),
+        overlap: f64,
+    ) -> usize {
+        let (times, closing) = (&self.times[..count], &self.closing[..count]);
+        let Some(&span) = times.last().filter(|_| count > 1) else {
+            return count;
+        };
         let (problem, table) = (&run.problem, run.problem.table());
         let end = run.scalars.approach() + span;
-        let at_end = window.reduced(stand, span);
-        let bound = |(k, event): (usize, &WindowEvent)| {
-            let way = event.time / span;
-            let mut off: Vec<f64> = at_end.iter().map(|[z, _]| -way * z).collect();
-            for (off, [z, _]) in off.iter_mut().zip(window.reduced(k, event.time)) {
-                *off += z;
+        let bounds: Vec<Bound> = times
+            .iter()
+            .map(|&time| Bound::at(time, times, closing, table.self_influence()))
+            .collect();
+        // Whoever is far from touching stays open by a coarser bound.
+        let coarse = bounds.iter().map(|bound| bound.most).fold(0.0, f64::max);
+        let mut near: Vec<(usize, GapLine)> = Vec::new();
+        for &(node, line) in &self.gaps {
+            if line.gap - span * line.closing.max(0.0) > coarse {
+                continue;
             }
-            let energy: f64 = off.iter().map(|z| z * z).sum();
-            (table.self_influence() * energy).sqrt()
-        };
-        let bounds: Vec<f64> = events.iter().enumerate().map(bound).collect();
-        let most = bounds.iter().copied().fold(0.0, f64::max);
+            let at_end = run.field.line(problem, node, end);
+            let known =
+                [at_end.gap - line.gap + span * line.closing, line.closing - at_end.closing];
+            let stays =
+                |bound: &Bound| line.gap - bound.time * line.closing + bound.least(known) >= 0.0;
+            if !bounds.iter().all(stays) {
+                near.push((node, line));
+            }
+        }
+        let place = |&node: &usize| table.place(node);
         let touched: Vec<usize> = window.touched().map(|node| table.place(node)).collect();
         let before = &run.contact.order()[..self.relief.nrows()];
-        let contact: Vec<usize> = before.iter().map(|&node| table.place(node)).collect();
-        let mut influence = vec![0.0; contact.len()];
-        let mut beside = vec![0.0; touched.len()];
-        for &(node, GapLine { gap, closing }) in &self.gaps {
-            let at_end = run.field.line(problem, node, end).gap;
-            if gap.min(at_end) >= most {
-                continue;
+        let contact: Vec<usize> = before.iter().map(place).collect();
+        let mut parts: Vec<(&[(usize, GapLine)], usize)> =
+            near.chunks(AT_ONCE).map(|part| (part, count)).collect();
+        let work = near.len() * count * (contact.len() + count);
+        parallel::for_each(work, &mut parts, |(part, stand)| {
+            let (nodes, own) = (contact.len(), self.own.get(..count, ..count));
+            let mut influence = vec![0.0; nodes * part.len()];
+            let mut weights = vec![0.0; count * part.len()];
+            for (k, (node, _)) in part.iter().enumerate() {
+                let place = table.place(*node);
+                table.fill_column(place, &contact, &mut influence[k * nodes..][..nodes]);
+                table.fill_column(place, &touched, &mut weights[k * count..][..count]);
             }
-            let chord = |time: f64| gap + time / span * (at_end - gap);
-            if events.iter().zip(&bounds).all(|(event, bound)| chord(event.time) >= *bound) {
-                continue;
+            let columns = &mut weights[..];
+            let mut columns = MatMut::from_column_major_slice_mut(columns, count, part.len());
+            solve_lower_triangular_in_place(own, columns.as_mut(), Par::Seq);
+            let relief = &self.relief.as_slice()[..nodes * count];
+            let relief = MatRef::from_column_major_slice(relief, nodes, count).transpose();
+            let influence = MatRef::from_column_major_slice(&influence, nodes, part.len());
+            matmul(columns, Accum::Add, relief, influence, -1.0, Par::Seq);
+            for ((_, line), weights) in part.iter().zip(weights.chunks(count)) {
+                *stand = first_overlap(line, weights, times, closing, overlap).min(*stand);
             }
-            let place = table.place(node);
-            table.fill_column(place, &contact, &mut influence);
-            table.fill_column(place, &touched, &mut beside);
-            for (beside, column) in beside.iter_mut().zip(self.relief.column_iter()) {
-                *beside -= column.iter().zip(&influence).map(|(a, c)| a * c).sum::<f64>();
-            }
-            let has_touched = |count: &usize| {
-                let time = events[*count].time;
-                let pressed = window.answers(*count, time);
-                let moved: f64 = beside.iter().zip(pressed).map(|(s, [q, _])| s * q).sum();
-                gap - time * closing + moved < -overlap
-            };
-            stand = (1..stand).find(has_touched).unwrap_or(stand);
+        });
+        parts.into_iter().map(|(_, stand)| stand).fold(count, usize::min)
+    }
+}
+
+/// The first event before which a gap closes, by what each event adds to it; their number if it does not.
+fn first_overlap(
+    line: &GapLine,
+    weights: &[f64],
+    times: &[f64],
+    closing: &[f64],
+    overlap: f64,
+) -> usize {
+    let (mut gap, mut rate) = (line.gap - times[0] * line.closing, -line.closing);
+    for k in 1..times.len() {
+        rate += closing[k - 1] * weights[k - 1];
+        gap += (times[k] - times[k - 1]) * rate;
+        if gap < -overlap {
+            return k;
         }
-        stand
+    }
+    times.len()
+}
+
+/// How what events add to a gap at a time follows from what they add at the end and how fast that grows there.
+struct Bound {
+    time: f64,
+    /// α and β.
+    weights: [f64; 2],
+    /// By how much that may be off, and what they add at most.
+    off: f64,
+    most: f64,
+}
+
+impl Bound {
+    /// With the weights for which it is off least.
+    fn at(time: f64, times: &[f64], closing: &[f64], self_influence: f64) -> Self {
+        let end = times.last().copied().unwrap_or_default();
+        let terms = times
+            .iter()
+            .zip(closing)
+            .map(|(touched, c)| [c * (time - touched).max(0.0), c * (end - touched), *c]);
+        let mut sums = [[0.0; 3]; 3];
+        for term in terms.clone() {
+            for (sums, a) in sums.iter_mut().zip(term) {
+                sums.iter_mut().zip(term).for_each(|(sum, b)| *sum += a * b);
+            }
+        }
+        let [[yy, ya, yb], [_, aa, ab], [_, _, bb]] = sums;
+        let determinant = aa * bb - ab * ab;
+        let weights = if determinant > LEAST_DETERMINANT * aa * bb {
+            [(ya * bb - yb * ab) / determinant, (yb * aa - ya * ab) / determinant]
+        } else {
+            [time / end, 0.0]
+        };
+        let off = terms.map(|[y, a, b]| (y - weights[0] * a - weights[1] * b).powi(2)).sum::<f64>();
+        let [off, most] = [off, yy].map(|squares| (self_influence * squares).sqrt());
+        Self { time, weights, off, most }
+    }
+
+    /// The least that it can be where the end and the slope there are known.
+    fn least(&self, known: [f64; 2]) -> f64 {
+        let [alpha, beta] = self.weights;
+        alpha * known[0] + beta * known[1] - self.off
     }
 }

@@ -187,10 +187,11 @@ impl Columns {
     /// `L⁻ᵀ F` for the columns at some positions. Columns are independent, so that the result does not depend on how many
     /// threads share them.
     pub(super) fn solved_backwards(&self, factor: &Panels, positions: &[usize]) -> DMatrix<f64> {
-        let rows = self.rows;
+        let rows = factor.rows();
         let mut solved = DMatrix::zeros(rows, positions.len());
         let located = positions.iter().filter_map(|&position| self.locate(position));
-        for ((block, column), target) in located.zip(solved.as_mut_slice().chunks_mut(rows.max(1))) {
+        for ((block, column), target) in located.zip(solved.as_mut_slice().chunks_mut(rows.max(1)))
+        {
             let values = block.values.get(column..).unwrap_or_default();
             for (target, value) in target.iter_mut().zip(values.iter().step_by(block.width)) {
                 *target = *value;

@@ -286,8 +286,7 @@ mod tests {
         updater.watch(&problem, &sequence, &watched, &mut Schur::default())?;
         let touching: Vec<usize> = watched.iter().rev().step_by(2).copied().collect();
         let found = updater.relief(&problem, &sequence, &touching)?.unwrap_or_default();
-        let expected =
-            Dense.relief(&problem, &sequence, &touching)?.unwrap_or_default();
+        let expected = Dense.relief(&problem, &sequence, &touching)?.unwrap_or_default();
         assert_eq!((found.shape(), expected.amax() > 0.1), ((600, 100), true));
         // Rounding of numbers below 1, in a well-conditioned matrix.
         assert!((found - expected).amax() < 1e-14);
