@@ -8,9 +8,8 @@
 /// and makes long paths cheaper. [`check`](super::check()) tests a promise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum ContactGrowth {
-    /// Nothing is known: pressures may fall, and nodes may leave the contact. A path finds every event, touch or
-    /// release, from a solution of its own, or without a factor many events together up to the next release, each of
-    /// which it checks. The default updater gives up its factor early.
+    /// Nothing is known: pressures may fall, and nodes may leave the contact. A path computes the events up to the next
+    /// release together and checks each of them, and finds the release from a solution of its own.
     #[default]
     Unknown,
     /// `y₂ ≥ 0` and `r₂ ≥ 0`: no node ever leaves the contact, and no gap opens. But nodes that join

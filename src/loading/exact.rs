@@ -1,24 +1,30 @@
-//! Events in windows with a factor, on bodies whose contact only grows: nodes that touch, and with a hardness elastic
-//! nodes that yield.
+//! Events in windows with a factor: nodes that touch, with a hardness elastic nodes that yield, and where nodes may leave
+//! all events before one does.
+
+mod leaving;
 
 use super::contradiction::{Slack, contradiction};
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
 use super::factor_log::FactorLog;
 use super::gap_field::GapLine;
 use super::plastic::Plastic;
-use super::ranking::{Ranking, rank, rank_yields, survey};
+use super::ranking::{Ranking, rank, rank_closing, rank_yields, survey};
 use super::run::LoadingRun;
 use super::scalars::Rates;
 use super::state::ContactEvent;
 use super::tolerances::ties_until;
 use super::trial::{Trial, of_nodes};
-use super::tuning::{MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE, TOLERANCE};
+use super::tuning::{
+    AS_MANY_AGAIN, FEWEST_BETWEEN_RELEASES, LEAST_RATE, MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE,
+    TOLERANCE,
+};
 use super::walk::{Carried, Walk};
 use super::window::{SUMS, Watched, Window, of_overlap};
 use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Solution, join_all};
-use crate::{ContactGrowth, Error, Problem};
+use crate::{ContactGrowth, Error, Problem, UpdaterError};
+use leaving::AtStart;
 
 /// Finds events in windows: what may happen before the *horizon*, the time of the next event of any node that is not
 /// watched.
@@ -26,7 +32,8 @@ use crate::{ContactGrowth, Error, Problem};
 /// Where contact only grows and nobody yields, that time is a lower bound if the kernel is convex. Otherwise a window
 /// is solved at its end and checked there: gaps only close and pressures only grow, so that what is right at the end
 /// was right throughout. Where the end contradicts events, fewer are played. Nodes that yield leave the factor, which
-/// cannot be undone: a window with such events is solved with the factor as it was.
+/// cannot be undone: a window with such events is solved with the factor as it was. Where nodes may leave, the window is
+/// looked at in between as well, and [ends before](leaving) one does.
 #[derive(Debug)]
 pub(super) struct Exact {
     growth: ContactGrowth,
@@ -65,14 +72,15 @@ impl Exact {
             return Ok(None);
         }
         let (touches, approach) = (most_nodes - run.contact_nodes(), run.scalars.approach());
-        let size = run.affordable(updater, self.next_size(run, touches))?;
+        let size = run.affordable(updater, self.next_size(run, log, touches))?;
         run.renew_field(updater, approach)?;
         let Survey { first, beyond, rates } = self.survey(run)?;
         if self.ranking.is_empty() {
             return Err(self.growth_stopped(run));
         }
         let start = Stopwatch::start();
-        let size = size.min(self.ranking.len());
+        let closing = self.ranking.iter().filter(|(time, _)| time.is_finite());
+        let size = size.min(if run.may_leave() { closing.count() } else { self.ranking.len() });
         let (size, horizon) = self.choose(size, self.multiple(), [approach, first]);
         run.timings.choice += start.elapsed();
         let before = Carried::of(run);
@@ -86,7 +94,8 @@ impl Exact {
         if played == 0 {
             return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
         }
-        self.follow(run, updater, log)?;
+        let at_start = self.before_release(run, updater, size)?;
+        self.follow(run, updater, log, at_start.as_ref())?;
         if self.window.events().len() < played {
             failure = None;
         }
@@ -112,14 +121,72 @@ impl Exact {
         self.is_behind = is_behind;
     }
 
+    /// The same where nodes may leave: none, and nothing has happened, if the updater does not say what nodes that touch
+    /// take off the contact. The next event is a touch.
+    pub(super) fn produce_before_release(
+        &mut self,
+        run: &mut LoadingRun,
+        (updater, log): (&mut dyn LinearUpdater, &mut FactorLog),
+        most_nodes: usize,
+    ) -> Result<bool, Error> {
+        if self.size == Some(1) || updater.relief(&run.problem, &run.contact, &[])?.is_none() {
+            self.window = Window::default();
+            return Ok(false);
+        }
+        // What went wrong behind these states comes again with the next event.
+        self.produce(run, (updater, log), most_nodes)?;
+        Ok(true)
+    }
+
+    /// Where nodes may leave: takes back the events of the window behind the first that does. Returns what the window
+    /// began with, with `size` nodes watched.
+    fn before_release(
+        &mut self,
+        run: &mut LoadingRun,
+        updater: &mut dyn LinearUpdater,
+        size: usize,
+    ) -> Result<Option<AtStart>, Error> {
+        if !run.may_leave() {
+            return Ok(None);
+        }
+        let closing = self.window.events().iter().take_while(|event| event.closing > LEAST_RATE);
+        let stand = closing.count().max(1);
+        self.take_back(run, stand);
+        if stand == 1 {
+            return Ok(None);
+        }
+        let touched: Vec<usize> = self.window.touched().collect();
+        let relief = updater.relief(&run.problem, &run.contact, &touched)?.unwrap_or_default();
+        UpdaterError::check_length("the relief", relief.nrows(), run.contact.len())?;
+        UpdaterError::check_length("the relief", relief.ncols(), touched.len())?;
+        if !relief.iter().copied().all(f64::is_finite) {
+            return Err(run.not_finite());
+        }
+        let unwatched = self.ranking[size..].iter().map(|&(_, node)| node);
+        let at_start = AtStart::of(run, &self.window, relief, unwatched)?;
+        let tension = TOLERANCE * run.greatest_pressure(run.scalars.approach() + self.end());
+        let stand = at_start.before_release(&*self.window.touched_factor()?, tension);
+        self.take_back(run, stand);
+        Ok(Some(at_start))
+    }
+
+    /// Takes back all but the first events of the window, of which none has joined.
+    fn take_back(&mut self, run: &mut LoadingRun, stand: usize) {
+        run.timings.taken_back += self.window.events().len() - stand;
+        self.window.take_back(stand);
+    }
+
     /// How many nodes to watch.
-    fn next_size(&self, run: &LoadingRun, touches: usize) -> usize {
+    fn next_size(&self, run: &LoadingRun, log: &FactorLog, touches: usize) -> usize {
         let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
         let may_yield = run.may_yield();
         let size = self.size.unwrap_or_else(|| {
             let wanted = watched_for(touches);
             let wanted = if may_yield { wanted.saturating_mul(2) } else { wanted };
-            automatic_window(count, nodes, WITH_FACTOR).min(wanted)
+            let size = automatic_window(count, nodes, WITH_FACTOR).min(wanted);
+            // Where nodes leave often, few of those watched touch before the next one does.
+            let likely = FEWEST_BETWEEN_RELEASES.max(AS_MANY_AGAIN * log.last_stayed());
+            if run.may_leave() { size.min(likely) } else { size }
         });
         size.min(if may_yield { nodes } else { nodes - run.contact_nodes() })
     }
@@ -135,7 +202,11 @@ impl Exact {
             let first = times.fold(f64::INFINITY, f64::min);
             return Ok(Survey { first, beyond: f64::INFINITY, rates });
         }
-        let touches = rank(run, &mut self.ranking)?;
+        let touches = if run.may_leave() {
+            rank_closing(run, &mut self.ranking)?
+        } else {
+            rank(run, &mut self.ranking)?
+        };
         let [yields, beyond] = rank_yields(run, &mut self.ranking);
         let first = touches.min(yields);
         Ok(Survey { first, beyond, rates: run.scalars.rates() })
@@ -257,13 +328,14 @@ impl Exact {
         run: &mut LoadingRun,
         updater: &mut dyn LinearUpdater,
         log: &mut FactorLog,
+        at_start: Option<&AtStart>,
     ) -> Result<(), Error> {
         // When the first contradiction was is an estimate, which must not make the search long if it keeps
         // failing.
         let mut fewest = 1;
         while !self.window.is_of_touches() {
             let (trial, until) = self.try_end(run, updater)?;
-            if self.take_back(run, until, &mut fewest) == 0 {
+            if self.drop_later(run, until, &mut fewest) == 0 {
                 return self.commit(run, updater, log, trial);
             }
         }
@@ -271,18 +343,30 @@ impl Exact {
         run.join(updater, &self.window)?;
         let joined = self.window.events().iter().map(|event| event.position);
         let joined: Vec<usize> = joined.collect();
-        let may_fail = self.growth == ContactGrowth::Monotone || run.plastic.is_some();
+        let may_fail = self.growth != ContactGrowth::Convex || run.plastic.is_some();
         while may_fail && self.window.events().len() > 1 {
             // The next window needs the same solution and the same displacements, and finds them.
             let end = run.scalars.approach() + self.end();
             run.renew_field(updater, end)?;
             let there = (&run.problem, &run.contact, &[][..]);
             let until = contradiction(run, there, (end, slack_at(run, there, end)));
-            let dropped = self.take_back(run, until, &mut fewest);
+            let dropped = self.drop_later(run, until, &mut fewest);
             if dropped == 0 {
                 break;
             }
             run.cut(updater, run.contact.len() - dropped)?;
+        }
+        if let Some(at_start) = at_start.filter(|_| self.window.events().len() > 1) {
+            let end = run.scalars.approach() + self.end();
+            run.renew_field(updater, end)?;
+            let overlap = TOLERANCE * (run.problem.greatest_gap() + end);
+            let events = self.window.events().len();
+            let stand = at_start.before_others(run, (&self.window, events), overlap);
+            if stand < events {
+                self.window.truncate(stand);
+                run.timings.taken_back += events - stand;
+                run.cut(updater, count + stand)?;
+            }
         }
         if let Some(error) = self.pulled(run, updater)? {
             run.cut(updater, count)?;
@@ -298,9 +382,14 @@ impl Exact {
         self.window.events().last().map_or(0.0, |event| event.time)
     }
 
-    /// Takes back events that a contradiction at the end of the window says were none, `until` before the end; returns
-    /// how many.
-    fn take_back(&mut self, run: &mut LoadingRun, until: Option<f64>, fewest: &mut usize) -> usize {
+    /// Drops events that a contradiction at the end of the window says were none, `until` before the end; returns how
+    /// many.
+    fn drop_later(
+        &mut self,
+        run: &mut LoadingRun,
+        until: Option<f64>,
+        fewest: &mut usize,
+    ) -> usize {
         let events = self.window.events();
         let Some(until) = until.filter(|_| events.len() > 1) else {
             return 0;
@@ -329,7 +418,8 @@ impl Exact {
         // Pressures and rates of nodes that touched, gaps and their rates of nodes that yielded.
         let mut pressed: Vec<(usize, [f64; 2])> = Vec::new();
         let mut values = vec![[0.0; 2]; nodes];
-        for (event, answer) in self.window.events().iter().zip(self.window.answers(end)) {
+        for (event, answer) in self.window.events().iter().zip(self.window.answers(usize::MAX, end))
+        {
             let node = self.window.node(event.position);
             if event.kind == ContactEvent::Touch {
                 let yields = self.window.events().iter().any(|other| {

@@ -104,6 +104,11 @@ impl FactorLog {
         untouched.map(|(_, &node)| node).collect()
     }
 
+    /// How many of the nodes of the last window stayed in contact.
+    pub(super) fn last_stayed(&self) -> usize {
+        self.windows.last().map_or(0, |[_, _, stayed]| *stayed)
+    }
+
     /// Makes the factor of a contact with an updater that has no node. Returns false, and nothing has happened, if
     /// `budget` bytes are not enough for that.
     ///

@@ -8,9 +8,10 @@
 //! * In *windows*, if contact only ever grows: a δⱼ computed earlier is then a lower bound, and only the nodes
 //!   with the smallest ones need be watched until the *horizon*, the smallest bound among all others, is
 //!   reached. If bounds may fail, a window is checked at its end.
-//! * One at a time, nodes that *leave* among them, if nothing is known of the kernel. Without a factor, and with a
-//!   hundred nodes in contact or more, in windows as well: each ends before a node leaves, and is checked at its end
-//!   and at each event in it.
+//! * If nothing is known of the kernel, nodes may *leave*. Windows then end before one does, and are checked at their ends
+//!   and at each event; a release has a solution of its own. So has every event without a factor as long as fewer than a
+//!   hundred nodes are in contact, and with an updater that does not say what nodes that touch
+//!   [take off the others](crate::updater::LinearUpdater::relief).
 //!
 //! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Exact` then watches nodes of both kinds,
 //! and checks a window in which nodes yield at its end before the updater learns of it.

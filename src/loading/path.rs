@@ -122,7 +122,10 @@ impl LoadingPath {
         let stop = phase.stop(run, end);
         let may_leave = run.may_leave();
         match phase {
-            phase if may_leave => self.single.produce(run, phase, &mut self.estimated, most_nodes),
+            phase if may_leave => {
+                let windows = (&mut self.exact, &mut self.estimated);
+                self.single.produce(run, phase, windows, most_nodes)
+            }
             _ if is_enough => Ok(()),
             Phase::Iterations(iterations) => self.estimated.produce(run, &mut **iterations),
             Phase::Factor { updater, log, .. } => {

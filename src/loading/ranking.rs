@@ -7,7 +7,7 @@ use super::run::LoadingRun;
 use super::scalars::{PlasticScalars, Rates};
 use super::sum::Sum;
 use super::tolerances::ties_from;
-use super::tuning::TOLERANCE;
+use super::tuning::{LEAST_RATE, TOLERANCE};
 use crate::Error;
 use crate::clock::Stopwatch;
 
@@ -27,6 +27,21 @@ pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, E
     }
     let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
     fill(run, ranking, Some(0.0), |line| {
+        first = first.min(line.touches());
+        ties_from(approach, *line)
+    })?;
+    run.timings.choice += start.elapsed();
+    Ok(first)
+}
+
+/// The same where nodes may leave, and gaps may open: those that do not close would never touch.
+pub(super) fn rank_closing(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, Error> {
+    let start = Stopwatch::start();
+    let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
+    fill(run, ranking, Some(0.0), |line| {
+        if line.closing <= LEAST_RATE {
+            return f64::INFINITY;
+        }
         first = first.min(line.touches());
         ties_from(approach, *line)
     })?;

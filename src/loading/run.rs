@@ -425,8 +425,9 @@ impl LoadingRun {
         loop {
             // Where nodes may yield, a row for each of their pressures as well.
             let rows = if self.plastic.is_some() { 2 * size } else { size };
-            let needed =
-                updater.bytes(count + size, size).saturating_add(WindowFactor::bytes(rows));
+            let relief = if self.may_leave() { count.saturating_mul(8 * size) } else { 0 };
+            let needed = updater.bytes(count + size, size);
+            let needed = needed.saturating_add(relief).saturating_add(WindowFactor::bytes(rows));
             match self.memory.check(needed, count) {
                 Err(_) if size > 1 => size /= 2,
                 checked => return checked.map(|()| size),

@@ -4,6 +4,7 @@ use super::tuning::{ESTIMATED, LEAST_RATE, TIED_EVENTS, TOLERANCE};
 
 use super::estimated::Estimated;
 use super::estimated::leaving::Attempt;
+use super::exact::Exact;
 use super::phase::Phase;
 use super::ranking::{Ranking, fill};
 use super::run::LoadingRun;
@@ -25,8 +26,8 @@ struct Upcoming {
 }
 
 /// Finds events for kernels of which nothing is known: what is right at the end of a window need not have been right
-/// throughout, so that with a factor each event has a solution of its own, and without one those that no window
-/// [between releases](super::estimated::leaving) holds.
+/// throughout. Windows hold what comes before the next release, [with a factor](super::exact) and
+/// [without](super::estimated::leaving); all other events have a solution of their own.
 #[derive(Debug, Default)]
 pub(super) struct Single {
     upcoming: Option<Upcoming>,
@@ -62,13 +63,13 @@ impl Single {
         Ok(())
     }
 
-    /// Computes states up to the next release without a factor, if a window holds them; otherwise one state, unless
-    /// there is none with at most `most_nodes` in contact.
+    /// Computes states up to the next release, if a window holds them; otherwise one state, unless there is none with at
+    /// most `most_nodes` in contact.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
         phase: &mut Phase,
-        estimated: &mut Estimated,
+        (exact, estimated): (&mut Exact, &mut Estimated),
         most_nodes: usize,
     ) -> Result<(), Error> {
         // Whatever the limit, so that a path that goes on behind it is the same.
@@ -93,6 +94,21 @@ impl Single {
         };
         if !next.approach.is_finite() {
             return Err(run.not_finite());
+        }
+        // What is inherited may be tension that no release explains.
+        if let Phase::Factor { updater, log, .. } = phase
+            && next.event == ContactEvent::Touch
+            && self.inherited == 0.0
+        {
+            let front = run.scalars.approach();
+            let solver = (&mut **updater, log);
+            if exact.produce_before_release(run, solver, most_nodes)? {
+                self.has_begun = false;
+                if run.scalars.approach() > front {
+                    self.tied = 0;
+                }
+                return Ok(());
+            }
         }
         self.count_tie(run, next.approach)?;
         let step = run.steps() + 1;
@@ -211,6 +227,7 @@ impl Single {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ContactGrowth;
     use crate::loading::test_chain;
 
     /// Twenty events for each of five nodes and one more, all at one approach.
@@ -289,8 +306,9 @@ mod tests {
         let mut run = test_chain::run(&[0.0, 1.25, 1.0, 9.0])?;
         let mut phase = Phase::Iterations(Box::new(test_chain::Altered::inexact(1e-6)));
         let (mut single, mut estimated) = (Single::default(), Estimated::new(None, true));
+        let mut exact = Exact::new(ContactGrowth::Unknown, None);
         for _ in 0..4 {
-            single.produce(&mut run, &mut phase, &mut estimated, 3)?;
+            single.produce(&mut run, &mut phase, (&mut exact, &mut estimated), 3)?;
         }
         let found: Vec<_> = run
             .queue

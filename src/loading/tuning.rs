@@ -217,6 +217,10 @@ pub(super) const CONVOLUTION: f64 = 50.0;
 /// Greatest number of watched nodes, as a fraction of the contact nodes: their columns must stay small beside the
 /// factor.
 pub(super) const MOST_WATCHED: f64 = 0.05;
+/// Where nodes may leave, at least so many nodes are watched,
+pub(super) const FEWEST_BETWEEN_RELEASES: usize = 16;
+/// or so many times as have joined in the window before.
+pub(super) const AS_MANY_AGAIN: usize = 3;
 /// Nodes that were not watched before come in multiples of this if there are more: widths that suit the matrix product.
 pub(super) const MULTIPLE: usize = 96;
 /// Nanoseconds for one product of the events inside a window.
@@ -235,9 +239,11 @@ pub(super) const LEAST_WINDOW: usize = 64;
 /// Seconds of an event with a factor of n nodes, per n²: a matrix product. With the next two it decides when a factor
 /// is given up.
 pub(super) const FACTOR: f64 = 1.0e-11;
-/// The same of an event that is not in a window: per n², a solution and a row of the factor, and per node of the grid,
-/// the convolution of two fields.
-pub(super) const STEP: [f64; 2] = [5.0e-10, 5.0e-8];
+/// So many times that where windows are checked at each event, since nodes may leave.
+pub(super) const CHECKED: f64 = 2.5;
+/// Seconds of a node that leaves: per n², two solutions, for a window ends before it, and the rotations of the factor, and
+/// per node of the grid two convolutions of two fields.
+pub(super) const STEP: [f64; 2] = [2.0e-9, 1.0e-7];
 /// Seconds that a node that leaves takes by iterations, per node of the grid: windows end before it, and it has a
 /// solution of its own.
 pub(super) const RELEASE: f64 = 2.0e-6;

@@ -34,6 +34,9 @@ pub struct UpdaterReport {
     pub releases: bool,
     /// Whether it serves paths with a hardness.
     pub yields: bool,
+    /// Whether it answers with [`relief`](LinearUpdater::relief), which spares a solution for each event where nodes may
+    /// leave.
+    pub relieves: bool,
 }
 
 /// Goes through all verbs of an updater that has no node in contact yet, in the order in which a path
@@ -59,6 +62,7 @@ pub fn check(updater: &mut dyn LinearUpdater, problem: &Problem) -> Result<Updat
         contact: ContactSequence::new(problem.grid()),
         schur_error: 0.0,
         solution_error: 0.0,
+        relieves: false,
     };
     examiner.solution(0)?;
     let mut left = &nodes[..];
@@ -87,6 +91,7 @@ pub fn check(updater: &mut dyn LinearUpdater, problem: &Problem) -> Result<Updat
         truncates,
         releases,
         yields,
+        relieves: examiner.relieves,
     })
 }
 
@@ -97,6 +102,7 @@ struct Examiner<'a> {
     contact: ContactSequence,
     schur_error: f64,
     solution_error: f64,
+    relieves: bool,
 }
 
 impl Examiner<'_> {
@@ -109,6 +115,17 @@ impl Examiner<'_> {
         UpdaterError::check_length("the Schur complement", schur.size(), watched.len())?;
         let tolerance = tolerance(*updater);
         let own = problem.table().self_influence();
+        // The last ones first, as events need not come in the order of the window.
+        let touching: Vec<usize> = watched.iter().rev().take(2).copied().collect();
+        if let Some(relief) = updater.relief(problem, contact, &touching)? {
+            let dense = Dense.relief(problem, contact, &touching)?.unwrap_or_default();
+            UpdaterError::check_length("the relief", relief.len(), dense.len())?;
+            for (found, expected) in relief.iter().zip(dense.iter()) {
+                // Parts of a pressure.
+                check_error("the relief", contact.len(), (found - expected).abs(), tolerance)?;
+            }
+            self.relieves = true;
+        }
         for j in 0..watched.len() {
             for i in j..watched.len() {
                 let error = (schur.matrix()[(i, j)] - expected.matrix()[(i, j)]).abs() / own;

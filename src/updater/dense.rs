@@ -124,6 +124,17 @@ impl LinearUpdater for Dense {
         Ok(())
     }
 
+    fn relief(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+    ) -> Result<Option<DMatrix<f64>>, Error> {
+        let contact = contact.order();
+        let coupling = Self::influence(problem, contact, nodes)?;
+        Ok(Some(Self::factor(problem, contact)?.solve(&coupling)))
+    }
+
     fn solve_for(
         &mut self,
         problem: &Problem,

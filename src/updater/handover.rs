@@ -1,5 +1,7 @@
 //! The default: a factor, which the path may give up for iterations.
 
+use nalgebra::DMatrix;
+
 use super::{Left, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor, forward_verbs};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};

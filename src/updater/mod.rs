@@ -50,6 +50,8 @@ pub use window_factor::WindowFactor;
 use std::any::Any;
 use std::fmt;
 
+use nalgebra::DMatrix;
+
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
 
@@ -271,6 +273,23 @@ pub trait LinearUpdater: Any + Send + Sync {
         Err(UpdaterError::HardnessNotSupported.into())
     }
 
+    /// What a pressure on each of some nodes J takes off the contact: $`C_{II}^{-1} C_{IJ}`$, a row for each node in
+    /// contact and a column for each of `nodes`, which are among those of the last call of [`watch`](Self::watch);
+    /// nothing has joined since. Called only on bodies on which nodes may leave, where a window ends before one does.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the updater from answering; by default `None`: each event has a solution of its own then.
+    fn relief(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+    ) -> Result<Option<DMatrix<f64>>, Error> {
+        let _ = (problem, contact, nodes);
+        Ok(None)
+    }
+
     /// Makes right-hand sides b, two for each node in contact, into $`C_{II}^{-1} b`$. Called only on paths with a
     /// hardness.
     ///
@@ -367,6 +386,15 @@ macro_rules! forward_verbs {
             schur: &mut Schur,
         ) -> Result<(), Error> {
             self.$inner().watch_both(problem, contact, nodes, positions, schur)
+        }
+
+        fn relief(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            nodes: &[usize],
+        ) -> Result<Option<DMatrix<f64>>, Error> {
+            self.$inner().relief(problem, contact, nodes)
         }
 
         fn solve_for(

@@ -5,6 +5,7 @@ use std::fmt;
 use asperity::contact::ContactSequence;
 use asperity::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor};
 use asperity::{Error, Problem};
+use nalgebra::DMatrix;
 
 /// A call of a [`LinearUpdater`] that can fail, with the place of its answer.
 #[derive(Debug)]
@@ -44,6 +45,12 @@ pub enum Call<'a> {
         positions: &'a [usize],
         schur: &'a mut Schur,
     },
+    Relief {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+        nodes: &'a [usize],
+        relief: &'a mut Option<DMatrix<f64>>,
+    },
     SolveFor {
         problem: &'a Problem,
         contact: &'a ContactSequence,
@@ -66,6 +73,7 @@ impl Call<'_> {
             Self::Truncate { .. } => "truncate",
             Self::Release { .. } => "release",
             Self::WatchBoth { .. } => "watch_both",
+            Self::Relief { .. } => "relief",
             Self::SolveFor { .. } => "solve_for",
             Self::MakeRoom { .. } => "make_room",
         }
@@ -89,6 +97,10 @@ impl Call<'_> {
             Self::Release { problem, contact, left } => updater.release(problem, contact, left),
             Self::WatchBoth { problem, contact, nodes, positions, schur } => {
                 updater.watch_both(problem, contact, nodes, positions, schur)
+            }
+            Self::Relief { problem, contact, nodes, relief } => {
+                **relief = updater.relief(problem, contact, nodes)?;
+                Ok(())
             }
             Self::SolveFor { problem, contact, rhs } => updater.solve_for(problem, contact, rhs),
             Self::MakeRoom { problem, bytes } => updater.make_room(problem, *bytes),
@@ -214,6 +226,17 @@ impl<U: LinearUpdater, S: Send + Sync + 'static> LinearUpdater for Altered<U, S>
         schur: &mut Schur,
     ) -> Result<(), Error> {
         self.call(Call::WatchBoth { problem, contact, nodes, positions, schur })
+    }
+
+    fn relief(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+    ) -> Result<Option<DMatrix<f64>>, Error> {
+        let mut relief = None;
+        self.call(Call::Relief { problem, contact, nodes, relief: &mut relief })?;
+        Ok(relief)
     }
 
     fn solve_for(

@@ -1,5 +1,5 @@
-//! Paths without a factor on bodies on which nodes may leave: windows until one does, beside paths of single events
-//! with a factor.
+//! Paths on bodies on which nodes may leave: windows until one does, with a factor and without, beside paths of single
+//! events with a factor.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::History;
@@ -32,6 +32,13 @@ fn followed<U: LinearUpdater>(
     (path, states)
 }
 
+/// One event at a time, each from a solution that is exact to rounding.
+fn of_single_events(surface: &SelfAffine, kernel: &Layered, nodes: usize) -> Vec<LoadingState> {
+    let builder = LoadingSolver::builder(surface, kernel).updater(RecursiveCholesky::new());
+    let path = builder.window_size(1).max_nodes(nodes).build().unwrap();
+    path.map(Result::unwrap).collect()
+}
+
 /// Nodes along a side, ratio of moduli, thickness and shortest wavelength in cells, and a seed.
 const CASES: [([f64; 4], u64); 9] = [
     ([20.0, 10.0, 0.4, 2.0], 1),
@@ -49,6 +56,46 @@ const CASES: [([f64; 4], u64); 9] = [
     ([48.0, 10.0, 4.0, 4.0], 11),
 ];
 
+/// With a factor windows are what single events are, to rounding: sums over 2000 events of numbers that are right to some
+/// 10⁻¹⁵ of the last.
+#[test]
+fn windows_with_a_factor_are_single_events() {
+    let (mut releases, mut windows, mut events) = (0, 0, 0);
+    for ([n, ratio, thickness, shortest], seed) in CASES {
+        for is_free in [true, false] {
+            let kernel = coated(n as usize, ratio, thickness, is_free);
+            let amplitude = Amplitude::RmsHeight(1.0);
+            let surface = SelfAffine::new(0.8, 0.5 * n, shortest, amplitude, seed).unwrap();
+            let nodes = (0.9 * n * n) as usize;
+            let exact = of_single_events(&surface, &kernel, nodes);
+            let (path, found) = followed(&surface, &kernel, RecursiveCholesky::new(), nodes);
+            let case = format!("{n} {ratio} {thickness} {shortest} {seed} {is_free}");
+            assert_eq!(found.len(), exact.len(), "{case}");
+            let [first, last] = [exact[0], exact[exact.len() - 1]].map(|state| state.contact);
+            for (found, exact) in found.iter().zip(&exact) {
+                assert_eq!((found.event, found.node), (exact.event, exact.node), "{case}");
+                assert_eq!(found.step, exact.step);
+                let (a, b) = (found.contact, exact.contact);
+                assert_eq!(a.contact_nodes, b.contact_nodes);
+                for (a, b, scale) in [
+                    (a.approach, b.approach, last.approach),
+                    (a.load, b.load, last.load),
+                    (a.energy, b.energy, last.energy),
+                    (a.mean_gap, b.mean_gap, first.mean_gap),
+                ] {
+                    assert!((a - b).abs() <= 1e-11 * scale, "{case}: {a:e} {b:e}: {found:?}");
+                }
+            }
+            releases += exact.iter().filter(|s| s.event == ContactEvent::Release).count();
+            windows += path.timings().windows;
+            events += found.len();
+        }
+    }
+    println!("{events} events, {releases} releases, {windows} windows");
+    assert!(releases > 100, "{releases}");
+    assert!(4 * windows < events, "{windows} {events}");
+}
+
 /// Windows have the events of single steps with a factor, each of which has a solution that is exact to rounding:
 /// touches and releases, in the same order. Approaches are off by no more than states say, and loads by a part of some
 /// 10⁻⁵, which is asked to be 10⁻⁴; at least behind the first few, whose loads are nearly nothing.
@@ -61,7 +108,7 @@ fn windows_have_the_events_of_single_steps() {
             let amplitude = Amplitude::RmsHeight(1.0);
             let surface = SelfAffine::new(0.8, 0.5 * n, shortest, amplitude, seed).unwrap();
             let nodes = (0.9 * n * n) as usize;
-            let (_, exact) = followed(&surface, &kernel, RecursiveCholesky::new(), nodes);
+            let exact = of_single_events(&surface, &kernel, nodes);
             let (path, found) = followed(&surface, &kernel, ConjugateGradient::new(), nodes);
             let case = format!("{n} {ratio} {thickness} {shortest} {seed} {is_free}");
             assert_eq!(found.len(), exact.len(), "{case}");
@@ -86,17 +133,22 @@ fn windows_have_the_events_of_single_steps() {
     assert!(convolutions < 3 * events, "{convolutions} {events}");
 }
 
-/// A path that hands over to iterations as soon as these have windows has the same events, and one that ends and goes
-/// on, or is resumed from its states, as well.
+/// A path that hands over to iterations, here for want of memory, has the same events, and one that ends and goes on, or
+/// is resumed from its states, as well.
 #[test]
 fn paths_hand_over_and_go_on() {
     let (n, nodes) = (80, 1200);
     let kernel = coated(n, 10.0, 1.0, true);
     let amplitude = Amplitude::RmsHeight(1.0);
     let surface = SelfAffine::new(0.8, 20.0, 4.0, amplitude, 3).unwrap();
-    let (_, exact) = followed(&surface, &kernel, RecursiveCholesky::new(), nodes);
-    let (path, found) = followed(&surface, &kernel, Handover::new(), nodes);
-    assert!(path.handed_over_at().is_some_and(|at| (100..1000).contains(&at)));
+    let exact = of_single_events(&surface, &kernel, nodes);
+    let fixed = LoadingSolver::new(&surface, &kernel).unwrap().bytes();
+    let builder = LoadingSolver::builder(&surface, &kernel).updater(Handover::new());
+    // Ten blocks of 256 by 256 numbers are a factor of 1024 nodes.
+    let builder = builder.memory_budget(fixed + 6_000_000);
+    let mut path = builder.max_nodes(nodes).build().unwrap();
+    let found: Vec<LoadingState> = path.by_ref().map(Result::unwrap).collect();
+    assert!(path.handed_over_at().is_some_and(|at| (100..1024).contains(&at)));
     let events = |states: &[LoadingState]| -> Vec<_> {
         states.iter().map(|state| (state.event, state.node)).collect()
     };

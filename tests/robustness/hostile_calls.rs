@@ -176,6 +176,7 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
             Call::Watch(p, nodes) => {
                 watched.clone_from(nodes);
                 let _ = updater.watch(&problems[*p], &contact, nodes, &mut schur);
+                let _ = updater.relief(&problems[*p], &contact, &nodes[nodes.len() / 2..]);
             }
             Call::Join(p, positions, size) => {
                 // Of the last window, or of one that has never been.
@@ -214,6 +215,7 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
                     updater.watch_both(&problems[*p], &contact, nodes, positions, &mut schur);
                 let mut rhs = vec![[1.0, 2.0]; contact.len() + positions.len() % 2];
                 let _ = (updated, updater.solve_for(&problems[*p], &contact, &mut rhs));
+                let _ = updater.relief(&problems[*p], &contact, nodes);
             }
             Call::Push(node) => {
                 edit(&mut contact, |order| order.push(*node));

@@ -72,15 +72,15 @@ fn the_next_nodes_are_chosen() {
 #[test]
 fn windows_have_no_more_nodes_than_there_are() -> Result<(), Error> {
     let mut run = test_chain::run(&[0.0; 100])?;
-    assert_eq!(exact(Some(7)).next_size(&run, 100), 7);
-    assert_eq!(exact(Some(1000)).next_size(&run, 100), 100);
+    assert_eq!(exact(Some(7)).next_size(&run, &FactorLog::default(), 100), 7);
+    assert_eq!(exact(Some(1000)).next_size(&run, &FactorLog::default(), 100), 100);
     // Four to have three of them touch.
-    assert_eq!(exact(None).next_size(&run, 3), 4);
+    assert_eq!(exact(None).next_size(&run, &FactorLog::default(), 3), 4);
     for node in 0..90 {
         run.contact.push(node)?;
     }
-    assert_eq!(exact(Some(1000)).next_size(&run, 10), 10);
-    assert_eq!(exact(None).next_size(&run, 3), 4);
+    assert_eq!(exact(Some(1000)).next_size(&run, &FactorLog::default(), 10), 10);
+    assert_eq!(exact(None).next_size(&run, &FactorLog::default(), 3), 4);
     assert_eq!(exact(Some(7)).multiple(), 1);
     assert_eq!(exact(None).multiple(), 96);
     Ok(())
@@ -143,7 +143,7 @@ fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun, usize), Error> {
     let watched = [(2, 0.5), (4, 0.75), (6, 1.25), (8, 1.5)];
     windows.window = test_chain::apart(&watched, f64::INFINITY);
     assert_eq!(windows.window.play(4), None);
-    windows.follow(&mut run, &mut Dense, &mut FactorLog::default())?;
+    windows.follow(&mut run, &mut Dense, &mut FactorLog::default(), None)?;
     Ok((run, windows.window.events().len()))
 }
 

@@ -377,17 +377,23 @@ impl Window {
         WindowFactor::of(self.schur.clone(), &positions).map(Cow::Owned)
     }
 
-    /// What the nodes of the events have come to at a time behind them, and how fast that grows: pressures of those
-    /// that touched, and overlaps of those that yielded.
-    pub(super) fn answers(&self, time: f64) -> Vec<[f64; 2]> {
-        let own = self.eliminated.iter().zip(self.factor.positions()).enumerate();
+    /// What the nodes of the first `count` events have come to at a time behind these and before the next, and how fast
+    /// that grows: pressures of those that touched, and overlaps of those that yielded.
+    pub(super) fn answers(&self, count: usize, time: f64) -> Vec<[f64; 2]> {
+        let mut answers = self.reduced(count, time);
+        self.factor.solve_back(&mut answers);
+        answers
+    }
+
+    /// The same times the transposed factor: where nodes only touch, products of two of these are those of the pressures
+    /// by the Schur complement.
+    pub(super) fn reduced(&self, count: usize, time: f64) -> Vec<[f64; 2]> {
+        let own = self.eliminated.iter().zip(self.factor.positions()).enumerate().take(count);
         let own = own.map(|(event, (course, &row))| {
             let root = self.factor.column(event)[row];
             [-course.gap(time) / root, course.closing(time) / root]
         });
-        let mut answers: Vec<[f64; 2]> = own.collect();
-        self.factor.solve_back(&mut answers);
-        answers
+        own.collect()
     }
 
     /// Plays up to `most` events: what comes first, again and again, until the horizon. Ties go to the node of the
@@ -506,6 +512,14 @@ impl Window {
             stiffnesses.push(elastic.map(|row| -row.course.closing(time)).sum());
         }
         Ok(())
+    }
+
+    /// Forgets all but the first events, of which none has joined: their nodes stay watched.
+    pub(super) fn take_back(&mut self, events: usize) {
+        for event in self.events.iter().skip(events) {
+            self.rows[event.position].is_open = true;
+        }
+        self.truncate(events);
     }
 
     /// Forgets all but the first events. Their nodes are not watched any more.

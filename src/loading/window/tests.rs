@@ -267,7 +267,7 @@ fn both_kinds_of_events() -> Result<(), crate::Error> {
         }
         // Pressures are at the hardness. One has yielded by 7/4 − 3/4, and the other has only just; both overlap as
         // fast as the approach grows.
-        let found = window.answers(3.25);
+        let found = window.answers(usize::MAX, 3.25);
         let expected = [[0.75, 0.0], [1.0, 1.0], [0.75, 0.0], [0.0, 1.0]];
         for (found, expected) in found.iter().flatten().zip(expected.as_flattened()) {
             assert!((found - expected).abs() < 1e-14, "{found} {expected}");

@@ -5,8 +5,11 @@ use std::ops::Range;
 use std::ptr;
 
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
 use faer::{Accum, MatMut, MatRef, Par};
+use nalgebra::DMatrix;
 
 use super::operations;
 use super::panels::{Panels, Rotation, rotate};
@@ -177,6 +180,38 @@ impl Columns {
                 solve_lower_triangular_in_place(factor.diagonal(p), here, Par::Seq);
             }
         });
+    }
+
+    /// `L⁻ᵀ F` for the columns at some positions. Columns are independent, so that the result does not depend on how many
+    /// threads share them.
+    pub(super) fn solved_backwards(&self, factor: &Panels, positions: &[usize]) -> DMatrix<f64> {
+        let rows = factor.rows();
+        let mut solved = DMatrix::zeros(rows, positions.len());
+        let located = positions.iter().filter_map(|&position| self.locate(position));
+        for ((block, column), target) in located.zip(solved.as_mut_slice().chunks_mut(rows.max(1)))
+        {
+            let values = block.values.get(column..).unwrap_or_default();
+            for (target, value) in target.iter_mut().zip(values.iter().step_by(block.width)) {
+                *target = *value;
+            }
+        }
+        let work = operations::forward(rows, positions.len());
+        let mut parts: Vec<&mut [f64]> =
+            solved.as_mut_slice().chunks_mut((UNIT * rows).max(1)).collect();
+        parallel::for_each(work, &mut parts, |part| {
+            let width = part.len() / rows.max(1);
+            let mut part = MatMut::from_column_major_slice_mut(part, rows, width);
+            for p in (0..factor.len()).rev() {
+                let (first, count) = (p * ROWS, factor.rows_in(p));
+                let (above, below) = part.as_mut().split_at_row_mut(first);
+                let mut here = below.subrows_mut(0, count);
+                let diagonal = factor.diagonal(p).transpose();
+                solve_upper_triangular_in_place(diagonal, here.as_mut(), Par::Seq);
+                let left = factor.left(p).transpose();
+                matmul(above, Accum::Add, left, here.as_ref(), -1.0, Par::Seq);
+            }
+        });
+        solved
     }
 
     /// S −= Fᵀ F (lower triangle, column by column), but for the first `known` columns (all of those that were watched

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use nalgebra::DMatrix;
+
 use super::columns::Columns;
 use super::panels::{Panels, remove, remove_and};
 use crate::clock::Stopwatch;
@@ -122,6 +124,14 @@ impl Factor {
         self.columns.subtract_gram(known, matrix);
         self.timings.schur += start.elapsed();
         Ok(())
+    }
+
+    /// `C_II⁻¹ C_IJ` for some of the watched nodes, J.
+    pub(super) fn relief(&self, nodes: &[usize]) -> Result<DMatrix<f64>, Error> {
+        let place = |node: &usize| self.watched.iter().position(|other| other == node);
+        let positions: Vec<usize> = nodes.iter().filter_map(place).collect();
+        check_count(nodes.len(), positions.len())?;
+        Ok(self.columns.solved_backwards(&self.panels, &positions))
     }
 
     /// Makes `nodes` the watched ones; returns how many of them, at the beginning, were before.

@@ -45,8 +45,9 @@ fn an_updater_that_cannot_let_nodes_leave_says_so() {
 fn states_before_a_failure_stay() {
     let (kernel, gaps) = (0..).map(case).find(has_releases).unwrap();
     let expected: Vec<LoadingState> = kernel.path(&gaps).map(Result::unwrap).collect();
-    // One solution before first touch, one at every event.
-    for good in 0..expected.len() {
+    // One solution before first touch, and at least one for each release and for the window before it.
+    let releases = expected.iter().filter(|state| state.event == ContactEvent::Release).count();
+    for good in 0..releases {
         let mut solutions = 0;
         let updater = Altered::new(RecursiveCholesky::new()).on_call(move |inner, call| {
             call.ask(inner)?;
@@ -59,15 +60,19 @@ fn states_before_a_failure_stay() {
             Ok(())
         });
         let mut path = kernel.path_with(&gaps, updater);
-        for expected in &expected[..good] {
-            assert_eq!(path.next().unwrap().unwrap(), *expected);
-        }
-        let error = path.next().unwrap().unwrap_err();
+        let mut found = Vec::new();
+        let error = loop {
+            match path.next().unwrap() {
+                Ok(state) => found.push(state),
+                Err(error) => break error,
+            }
+        };
+        assert!(found.len() >= good && found == expected[..found.len()], "{good}");
         let closed = matches!(error, Error::Updater(UpdaterError::ContactNotClosed { .. }));
         assert!(closed, "{error}");
         assert!(path.next().is_none());
-        assert_eq!(path.state().as_ref(), expected[..good].last());
-        for state in &expected[..good] {
+        assert_eq!(path.state().as_ref(), found.last());
+        for state in &found {
             let approach = kernel.own_approach(state);
             let exact = complementary(&kernel.matrix(), &from_first_touch(&gaps), approach);
             let found = path.fields_at(state).unwrap().pressure;
