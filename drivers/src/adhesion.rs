@@ -64,6 +64,10 @@ fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Adhesion, Error> {
 
 fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let grid = sample.kernel.grid();
+    if sample.kernel.coefficient(0, 0) == 0.0 {
+        // On one cell the spectral half-space has no wave, and no pressure displaces anything.
+        return Ok(Tally::refusal());
+    }
     let is_long = grid.cell_aspect() > LONGEST;
     let set_up = law(draw, sample).and_then(|law| {
         let builder = AdhesivePath::builder(&sample.surface, &*sample.kernel, law);

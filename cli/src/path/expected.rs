@@ -34,10 +34,10 @@ const ITERATED: f64 = 1.6;
 /// number, and what comes to it per share of the nodes that have yielded and per share of those that have not.
 const YIELDING_FACTOR: [f64; 2] = [1.0, 8.0];
 const YIELDING_ITERATIONS: [f64; 2] = [0.5, 2.0];
-/// Seconds of an event where nodes may leave, per node of the grid and per n² of a factor of n nodes; without one a
-/// number and per node of the grid. 32² to 256² nodes, stiff coats with 0 to 15 % of releases: 0.3 to 2.8 of it were
-/// measured, more where more nodes leave.
-const STEP_FACTOR: [f64; 2] = [4e-8, 9e-10];
+/// Seconds of an event where nodes may leave, a number and per n² of a factor of n nodes; without one a number and per
+/// node of the grid. 128² and 256² nodes, stiff coats with a factor: 0.9 of it were measured without releases, and 3.6
+/// with 15 % of them.
+const STEP_FACTOR: [f64; 2] = [5e-4, 2.5e-11];
 const STEP_ITERATIONS: [f64; 2] = [1.7e-3, 5e-8];
 /// Seconds for tables and pictures, and per node of the grid with a factor and without one.
 const OUTPUT: f64 = 0.02;
@@ -102,10 +102,6 @@ impl Work {
     }
 
     fn has_factor(&self, contact: usize) -> bool {
-        // Where nodes may leave a factor serves some hundred.
-        if self.may_leave && !matches!(self.updater, Updater::Cholesky) {
-            return false;
-        }
         let elastic = self.elastic_of(contact);
         let fits = matches!(self.updater, Updater::Cholesky) || elastic as f64 <= self.room;
         fits && self.updater.has_factor(
@@ -123,11 +119,11 @@ impl Work {
     fn event(&self, contact: usize) -> f64 {
         let elastic = self.elastic_of(contact);
         if self.may_leave {
-            let ([first, second], [a, b]) = match self.has_factor(contact) {
-                true => (STEP_FACTOR, [self.grid(), (elastic as f64).powi(2)]),
-                false => (STEP_ITERATIONS, [1.0, self.grid()]),
+            let ([fixed, slope], size) = match self.has_factor(contact) {
+                true => (STEP_FACTOR, (elastic as f64).powi(2)),
+                false => (STEP_ITERATIONS, self.grid()),
             };
-            return first * a + second * b;
+            return fixed + slope * size;
         }
         let yields = self.end.yielded > 0.0;
         let yielding = |[fixed, share]: [f64; 2], part: f64| fixed + share * part;
@@ -151,7 +147,6 @@ impl Work {
         let factor = match self.updater {
             Updater::Cholesky => elastic,
             Updater::Iterative => 0.0,
-            Updater::Auto if self.may_leave => 0.0,
             Updater::Auto => (greatest_factor(self.nodes, end) as f64).min(self.room),
         };
         let rest = match self.has_factor_at_end() {
