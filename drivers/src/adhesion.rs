@@ -40,8 +40,9 @@ pub fn adhesion(bytes: &[u8]) -> Verdict {
     run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
 }
 
-/// A law whose range is of the order of the heights.
-fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Adhesion, Error> {
+/// A law whose range is of the order of the heights; none on one cell of the spectral half-space, which has no wave, so
+/// that no pressure displaces anything.
+fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Option<Adhesion>, Error> {
     let grid = sample.kernel.grid();
     let height = sample.surface.peak_to_valley();
     let height = if height > 0.0 { height } else { grid.dx() };
@@ -51,7 +52,7 @@ fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Adhesion, Error> {
     let (one, unit) = (1e-3, 1.0);
     let compliance = Adhesion::work(one).range(unit).on(&*sample.kernel)?;
     let compliance = compliance.resolution() / compliance.slope();
-    Ok(match draw.whole(0, 2) {
+    let law = match draw.whole(0, 2) {
         0 => Adhesion::work(0.5 * resolution / compliance * range * range),
         1 => Adhesion::work(0.5 * resolution / compliance * range * range).range(range),
         _ => {
@@ -59,23 +60,24 @@ fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Adhesion, Error> {
             let stress = resolution / compliance * (range - flat);
             Adhesion::maugis(0.5 * stress * (flat + range), stress).range(range)
         }
-    })
+    };
+    Ok(Some(law).filter(|_| compliance.is_normal()))
 }
 
 fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let grid = sample.kernel.grid();
-    if sample.kernel.coefficient(0, 0) == 0.0 {
-        // On one cell the spectral half-space has no wave, and no pressure displaces anything.
-        return Ok(Tally::refusal());
-    }
     let is_long = grid.cell_aspect() > LONGEST;
     let set_up = law(draw, sample).and_then(|law| {
+        let Some(law) = law else {
+            return Ok(None);
+        };
         let builder = AdhesivePath::builder(&sample.surface, &*sample.kernel, law);
         let size = draw.whole(1, 40);
-        Ok((builder.window_size(size).build()?, KernelTable::new(&*sample.kernel)?))
+        Ok(Some((builder.window_size(size).build()?, KernelTable::new(&*sample.kernel)?)))
     });
     let (path, table) = match set_up {
-        Ok(made) => made,
+        Ok(Some(made)) => made,
+        Ok(None) => return Ok(Tally::refusal()),
         Err(_) if is_long => return Ok(Tally::refusal()),
         Err(error) => {
             return Err(Violation::new(format!("a sensible law was refused: {error}")));
