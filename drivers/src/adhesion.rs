@@ -147,13 +147,16 @@ impl Trial<'_> {
         let mut levels = turns.to_vec();
         levels.sort_by(f64::total_cmp);
         let &[lowest, low, middle, high, highest] = &levels[..] else { return Ok(()) };
-        self.go(lowest)?;
-        self.go(highest)?;
-        let start = self.go(low)?;
-        self.go(high)?;
-        self.go(middle)?;
-        self.go(high)?;
-        let back = self.go(low)?;
+        // From out of range on, loading has the greatest gaps of all equilibria; unloading the least, if there was but one
+        // where it turned. Loops have neither.
+        self.go(lowest, Extreme::Greatest)?;
+        let turned = self.go(highest, Extreme::Greatest)?;
+        let is_alone = turned.is_some_and(|fields| self.is_alone(&fields));
+        let start = self.go(low, if is_alone { Extreme::Least } else { Extreme::Neither })?;
+        for turn in [high, middle, high] {
+            self.go(turn, Extreme::Neither)?;
+        }
+        let back = self.go(low, Extreme::Neither)?;
         if let (true, Some(start), Some(back)) = (is_free, start, back)
             && is_distinct(self.sample)
         {
@@ -179,11 +182,10 @@ impl Trial<'_> {
     }
 
     /// Goes to an approach; fields of the state there, if a branch ends there.
-    fn go(&mut self, to: f64) -> Result<Option<AdhesiveFields>, Stop> {
+    fn go(&mut self, to: f64, extreme: Extreme) -> Result<Option<AdhesiveFields>, Stop> {
         let present = self.path.state().map_or(f64::NEG_INFINITY, |s| s.contact.approach);
         let target = ContactTarget::Approach(to);
-        let is_loading = to >= present;
-        match is_loading {
+        match to >= present {
             true => self.path.load_to(target),
             false => self.path.unload_to(target),
         }?;
@@ -194,8 +196,8 @@ impl Trial<'_> {
         };
         let fields = self.path.fields_at(&state)?;
         self.check(&state, &fields)?;
-        if fields.gap.len() <= TRIED && self.sample.class != Class::Spectral {
-            self.compare(&fields, is_loading)?;
+        if self.is_tried(&fields) {
+            self.compare(&fields, extreme)?;
         }
         Ok(Some(fields))
     }
@@ -250,21 +252,52 @@ impl Trial<'_> {
         self.tally.close("load", state.contact.load, area * pressure.sum(), GAP * unit)
     }
 
-    /// A state beside all equilibria at its approach.
-    fn compare(&mut self, fields: &AdhesiveFields, is_loading: bool) -> Result<(), Violation> {
+    /// Whether all equilibria can be tried. On the spectral half-space there need be no greatest.
+    fn is_tried(&self, fields: &AdhesiveFields) -> bool {
+        fields.gap.len() <= TRIED && self.sample.class != Class::Spectral
+    }
+
+    /// The gaps of all equilibria at the approach of a state, less those of the state.
+    fn beyond(&self, fields: &AdhesiveFields) -> (f64, Vec<DVector<f64>>) {
         let kinds = if self.path.law().flat_range() > 0.0 { 4 } else { 3 };
         let approach = self.exact.approach(fields);
         let found = DVector::from_column_slice(fields.gap.as_slice());
+        let all = self.exact.all(kinds, approach);
+        (approach, all.into_iter().map(|gap| gap - &found).collect())
+    }
+
+    /// Whether a state is the only equilibrium at its approach.
+    fn is_alone(&self, fields: &AdhesiveFields) -> bool {
         let allowed = GAP * self.length();
-        for gap in self.exact.all(kinds, approach) {
-            let beyond = if is_loading { &gap - &found } else { &found - &gap };
+        self.is_tried(fields)
+            && self.beyond(fields).1.into_iter().all(|beyond| beyond.amax() <= allowed)
+    }
+
+    /// A state beside all equilibria at its approach, of which it is an extreme one.
+    fn compare(&mut self, fields: &AdhesiveFields, extreme: Extreme) -> Result<(), Violation> {
+        let sign = match extreme {
+            Extreme::Greatest => 1.0,
+            Extreme::Least => -1.0,
+            Extreme::Neither => return Ok(()),
+        };
+        let allowed = GAP * self.length();
+        let (approach, all) = self.beyond(fields);
+        for beyond in all {
+            let most = (sign * beyond).max();
             ensure!(
-                beyond.max() <= allowed,
-                "there is an equilibrium whose gaps are {:e} beyond those of the branch, at {approach:e}",
-                beyond.max()
+                most <= allowed,
+                "there is an equilibrium whose gaps are {most:e} beyond those of the branch, at {approach:e}"
             );
         }
         self.tally.checked += 1;
         Ok(())
     }
+}
+
+/// Which of all equilibria at an approach a state is.
+#[derive(Clone, Copy)]
+enum Extreme {
+    Greatest,
+    Least,
+    Neither,
 }
