@@ -153,21 +153,12 @@ fn strips_and_long_cells() {
             &Boussinesq::new(grid, 1.0).unwrap() as &dyn InfluenceKernel,
             &PeriodicBoussinesq::new(grid, 1.0).unwrap(),
         ] {
-            // As many nodes as usual are watched, or all of them.
-            for window in [64, 128] {
-                let builder = AdhesivePath::builder(&surface, kernel, Adhesion::work(5e-3));
-                let builder = builder.window_size(window).until(ContactTarget::AreaFraction(1.0));
-                let mut path = builder.build().unwrap();
-                let loading = path.run().unwrap();
-                let last = loading.states().last().unwrap();
-                assert_eq!(last.contact.contact_area_fraction, 1.0);
-                path.unload().unwrap();
-                path.run().unwrap();
-                let last = path.state().unwrap();
-                assert_eq!((last.contact.load, last.soft_nodes), (0.0, 0));
-                let left = (last.work - last.dissipated).abs();
-                assert!(left < 1e-12 * 5e-3 * grid.nominal_area(), "{nx} {ny} {window}: {left:e}");
-            }
+            let [loading, unloading] =
+                both(&surface, kernel, Adhesion::work(5e-3), ContactTarget::AreaFraction(1.0));
+            assert_eq!(loading.states().last().unwrap().contact.contact_area_fraction, 1.0);
+            let last = unloading.states().last().unwrap();
+            assert_eq!((last.contact.load, last.soft_nodes), (0.0, 0));
+            assert!((last.work - last.dissipated).abs() < 1e-12 * 5e-3 * grid.nominal_area());
         }
     }
 }
