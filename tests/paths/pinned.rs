@@ -17,8 +17,8 @@
 //! another rule for ties, fewer windows. Where the last digits change, it says what is computed in another order, and
 //! the drivers have run. A change that only moves code leaves the table as it is.
 //!
-//! Bits are those of a processor: matrix products sum in the order of its registers, with AVX-512 and with AVX2 to the
-//! same numbers on all of these paths.
+//! Bits are those of a processor: sums go in the order of its registers. With AVX-512 and with AVX2 two of these paths
+//! differ in the last digits of their columns; both are pinned.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::{History, LoadingBuilder};
@@ -262,12 +262,21 @@ fn small_paths_are_pinned() {
         let near = |(a, b): (&usize, &usize)| a.abs_diff(*b) <= 2 + b / 50;
         let is_same = (pin.states, pin.order) == (states, order)
             && pin.counts.iter().zip(&counts).all(near)
-            && (pin.counts == counts && pin.bits == bits || !pin.is_exact && mode != "bits");
+            && (pin.counts == counts && is_pinned(pin, bits) || !pin.is_exact && mode != "bits");
         if !is_same {
             changed.push(pin.to_string());
         }
     }
     assert!(changed.is_empty(), "these have changed:\n{}", changed.join("\n"));
+}
+
+/// Whether a path has these bits, or those of processors without AVX-512.
+fn is_pinned(pin: &Pin, bits: u64) -> bool {
+    let others = [
+        ("stiff coat, factor", 0x0159_f7a1_dc9a_d02a),
+        ("hard plateau, factor", 0x8ad1_fb66_dbb6_dda6),
+    ];
+    pin.bits == bits || others.contains(&(&pin.name[..], pin.bits))
 }
 
 /// Name, states, hashes of the events in their order and of the bits of all columns; windows, events taken back,
