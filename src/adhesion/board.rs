@@ -7,9 +7,7 @@ use super::state::NodeState;
 /// Pivots below this part of a compliance count as unstable.
 const LEAST_PIVOT: f64 = 1e-10;
 /// A window ends behind a pivot below this part: what it made of the matrix has lost three digits, and energies are to
-/// be known to 1e-12. On a periodic strip of 24 × 3 long cells one of 4.4e-3, with 113 events behind it in a window of
-/// all nodes, left 1.2e-11 of the work of adhesion; windows of the default size, 64, leave 8e-14. With 1e-2 windows end
-/// between nodes of one height that tie, on 9 × 7 periodic cells, and the path breaks off.
+/// be known to 1e-12.
 const SMALL_PIVOT: f64 = 1e-3;
 /// Nodes within this part of the range, or of the stress, of an event have it together.
 const TIE: f64 = 1e-13;
@@ -163,15 +161,21 @@ impl Board {
 
     /// When something happens next, to which row: of those that tie the one of the lowest node.
     pub(super) fn next(&self) -> Option<(f64, usize)> {
-        let lefts = |place: usize| Some((place, self.left(place)?));
-        let first = (0..self.size()).filter_map(lefts).map(|(_, left)| left.time());
-        let first = first.reduce(f64::min)?;
-        let tied = (0..self.size()).filter_map(lefts).filter(|(_, left)| {
-            // Most come much later, without a division.
-            left.distance - first * left.rate <= TIE * left.unit || left.time() == first
+        let times = (0..self.size()).filter_map(|place| {
+            let left = self.left(place)?;
+            Some((left.time(), place))
         });
-        let lowest = tied.map(|(place, _)| place).min_by_key(|&place| self.rows[place].node)?;
-        Some((first, lowest))
+        let times: Vec<(f64, usize)> = times.collect();
+        let &(first, place) = times.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let tied = times.iter().filter(|&&(time, place)| {
+            time == first
+                || self.left(place).is_some_and(|left| {
+                    let Left { distance, rate, unit } = left;
+                    distance - first * rate <= TIE * unit
+                })
+        });
+        let lowest = tied.map(|&(_, place)| place).min_by_key(|&place| self.rows[place].node);
+        Some((first, lowest.unwrap_or(place)))
     }
 
     fn left(&self, place: usize) -> Option<Left> {

@@ -1,12 +1,10 @@
 //! Where a path is: nodes on their law at an approach, and what solves there.
 
-use std::mem;
 use std::sync::Arc;
 
 use super::answers::Answers;
 use super::law::CohesiveLaw;
-use super::rows::Rows;
-use super::soft::Soft;
+use super::soft::{Half, Soft};
 use super::state::NodeState;
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
@@ -95,8 +93,6 @@ pub(super) struct Body {
 struct Watched {
     nodes: Vec<usize>,
     schur: Schur,
-    /// Room for the next matrix: memory that is new to a process costs more than what is written there.
-    spare: Schur,
 }
 
 /// What it takes to let nodes leave again that have joined last.
@@ -108,8 +104,14 @@ struct Joined {
     columns: Vec<f64>,
 }
 
-/// Nodes that are watched and need not be stay until they are more than one in so many.
-const MOST_OTHERS: usize = 4;
+/// What the rows of a window do to soft nodes.
+pub(super) struct Rows {
+    /// The columns of the soft nodes, by row.
+    half: Half,
+    /// 1, or −1 where what is given of a row lowers the pressures of soft nodes as its column in `half` raises them.
+    signs: Vec<f64>,
+}
+
 /// What a solution leaves in gaps that are known, relative to the range and the greatest length.
 const RESIDUAL: f64 = 1e-8;
 
@@ -214,7 +216,9 @@ impl Body {
             left.iter().map(move |&place| column[place])
         });
         self.joined = Some(Joined { nodes: joined.len(), columns: columns.collect() });
-        self.watched.keep(&left, 0)
+        self.watched.schur = self.watched.schur.part(&left, 0)?;
+        self.watched.nodes = left.iter().map(|&place| self.watched.nodes[place]).collect();
+        Ok(())
     }
 
     /// Lets nodes leave the contact, which are watched from then on if they were.
@@ -245,10 +249,8 @@ impl Body {
     }
 
     fn check_budget(&self, contact: usize, watched: usize) -> Result<(), Error> {
-        let all = self.updater.bytes(contact, watched);
-        // The columns twice, as they are moved where nodes join.
-        let needed = all.saturating_add(all.saturating_sub(self.updater.bytes(contact, 0)));
-        // The matrix twice, the factor of the soft nodes, and the columns of a window.
+        let needed = self.updater.bytes(contact, watched);
+        // The matrix twice, that of the soft nodes with its factor, and the columns of a window.
         let needed = needed.saturating_add(WindowFactor::bytes(watched).saturating_mul(3));
         if needed > self.budget {
             let (budget, nodes_that_fit) = (self.budget, self.contact.len());
@@ -257,39 +259,33 @@ impl Body {
         Ok(())
     }
 
-    /// Watches some nodes, behind those that were watched before. Of the latter, others stay until they are many: then
-    /// columns need not move.
+    /// Watches some nodes; those that were watched before come first.
     fn watch(&mut self, nodes: &[usize]) -> Result<(), Error> {
-        let grid = self.problem.initial_gap().len();
-        let places = self.watched.places(grid);
-        let mut is_new = vec![false; grid];
+        let mut is_new = vec![false; self.problem.initial_gap().len()];
         nodes.iter().for_each(|&node| is_new[node] = true);
-        let watched = self.watched.nodes.len();
-        let wanted = self.watched.nodes.iter().filter(|node| is_new[**node]).count();
-        let stays = |node: usize| is_new[node] || (watched - wanted) * MOST_OTHERS <= watched;
         let before = self.watched.nodes.iter().enumerate();
-        let kept: Vec<usize> = before.filter(|(_, node)| stays(**node)).map(|(k, _)| k).collect();
-        let mut new = Vec::new();
+        let kept: Vec<usize> = before.filter(|(_, node)| is_new[**node]).map(|(k, _)| k).collect();
+        let mut watched: Vec<usize> = kept.iter().map(|&place| self.watched.nodes[place]).collect();
+        watched.iter().for_each(|&node| is_new[node] = false);
         for &node in nodes {
-            if places[node].is_none() && mem::take(&mut is_new[node]) {
-                new.push(node);
+            if std::mem::take(&mut is_new[node]) {
+                watched.push(node);
             }
         }
         self.joined = None;
-        if new.is_empty() && kept.len() == watched {
+        if watched == self.watched.nodes {
             return Ok(());
         }
-        self.check_budget(self.contact.len(), kept.len() + new.len())?;
-        self.watched.keep(&kept, kept.len() + new.len())?;
-        let mut watched = mem::take(&mut self.watched.nodes);
-        watched.append(&mut new);
+        self.check_budget(self.contact.len(), watched.len())?;
+        let mut schur = self.watched.schur.part(&kept, watched.len())?;
         let places = self.contact.places();
         let with_positions: Vec<_> = watched.iter().map(|&node| (node, places[node])).collect();
-        let (problem, contact, schur) = (&self.problem, &self.contact, &mut self.watched.schur);
-        self.updater.watch_beside(problem, contact, &with_positions, kept.len(), schur)?;
-        self.watched.nodes = watched;
+        self.watched = Watched::default();
+        let (problem, contact) = (&self.problem, &self.contact);
+        self.updater.watch_beside(problem, contact, &with_positions, kept.len(), &mut schur)?;
+        self.watched = Watched { nodes: watched, schur };
         // Those that were watched before come in the same order, and so do the soft ones among them.
-        let places = self.watched.places(grid);
+        let places = self.watched.places(self.problem.initial_gap().len());
         let places: Option<Vec<usize>> = self.soft.iter().map(|&node| places[node]).collect();
         self.soft_factor =
             self.soft_factor.take().zip(places).map(|(soft, places)| soft.at(places));
@@ -322,19 +318,14 @@ impl Body {
     }
 
     /// What some nodes answer to each other and what sums of pressures and of gaps do, with all soft nodes on their
-    /// slope; with what is known from other rows at the same front. Others that may be rows next are watched with
-    /// them.
+    /// slope.
     pub(super) fn rows(
         &mut self,
         front: &Front,
-        (nodes, ahead): (&[usize], &[usize]),
-        before: Rows,
+        nodes: &[usize],
     ) -> Result<(Answers, Rows), Error> {
-        let places = self.watched.places(front.nodes.len());
-        if self.soft.iter().chain(nodes).any(|&node| places[node].is_none()) {
-            let all: Vec<usize> = self.soft.iter().chain(nodes).chain(ahead).copied().collect();
-            self.watch(&all)?;
-        }
+        let all: Vec<usize> = self.soft.iter().chain(nodes).copied().collect();
+        self.watch(&all)?;
         let sums = match self.sums.take() {
             Some(sums) => sums,
             None => self.sums_by_node()?,
@@ -346,33 +337,29 @@ impl Body {
         let Some(soft) = self.soft_factor.as_ref().filter(|_| of_rows.len() == nodes.len()) else {
             return Err(too_few);
         };
-        let schur = &self.watched.schur;
-        let mut rows = before;
-        if rows.half.width() == 0 {
-            let values = self.soft.iter().flat_map(|&node| [sums[0][node], sums[1][node]]);
-            soft.extend(&mut rows.half, values.collect(), sums.len())?;
-        }
-        let new = rows.append(nodes, &of_rows, front.nodes.len());
-        let mut values = Vec::with_capacity(soft.len() * new.len());
-        for &place in soft.places() {
-            values.extend(new.iter().map(|&(node, row)| match front.nodes[node] {
-                NodeState::Soft => f64::from(u8::from(row == place)),
-                _ => schur.entry(place, row),
-            }));
-        }
-        soft.extend(&mut rows.half, values, new.len())?;
         let states: Vec<NodeState> = nodes.iter().map(|&node| front.nodes[node]).collect();
-        let with_pressure =
-            |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
-        let half = |i: usize| rows.columns.get(i).copied().unwrap_or_else(|| i - nodes.len());
-        let (size, height) = (nodes.len(), nodes.len() + 2);
-        let mut matrix = vec![0.0; height * size];
-        for (j, column) in matrix.chunks_exact_mut(height).enumerate() {
+        let (size, width) = (nodes.len(), nodes.len() + 2);
+        let schur = &self.watched.schur;
+        let mut columns = vec![0.0; soft.len() * width];
+        let of_soft = soft.places().iter().zip(&self.soft);
+        for ((&place, &node), values) in of_soft.zip(columns.chunks_exact_mut(width)) {
+            for ((value, state), &row) in values.iter_mut().zip(&states).zip(&of_rows) {
+                *value = match state {
+                    NodeState::Soft => f64::from(u8::from(row == place)),
+                    _ => schur.entry(place, row),
+                };
+            }
+            (values[size], values[size + 1]) = (sums[0][node], sums[1][node]);
+        }
+        let half = soft.half(columns, width);
+        let gram = half.gram().ok_or(Error::FactorizationFailed { nodes: width })?;
+        let mut matrix = vec![0.0; width * size];
+        for (j, column) in matrix.chunks_exact_mut(width).enumerate() {
             // A gap is given of those in contact, of which the matrix of the updater has the negative.
             let sign = if states[j] == NodeState::Contact { -1.0 } else { 1.0 };
             let is_soft = states[j] == NodeState::Soft;
             for (i, value) in column.iter_mut().enumerate() {
-                let through = rows.half.product(half(i), half(j));
+                let through = gram.entry(i, j);
                 *value = match states.get(i) {
                     _ if is_soft => -through,
                     Some(NodeState::Soft) => sign * through,
@@ -382,10 +369,11 @@ impl Body {
             }
         }
         self.sums = Some(sums);
+        let with_pressure =
+            |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
         let signs = states.iter().map(|state| if with_pressure(state) { -1.0 } else { 1.0 });
-        rows.signs = signs.collect();
         let answers = Answers::new(matrix, states.iter().map(with_pressure).collect());
-        Ok((answers, rows))
+        Ok((answers, Rows { half, signs: signs.collect() }))
     }
 
     /// Sums of the squares of the pressures of soft nodes that are no rows, for each of some lists of what is given of
@@ -398,9 +386,11 @@ impl Body {
         given: &[(f64, Vec<f64>)],
     ) -> Vec<f64> {
         let Some(soft) = &self.soft_factor else { return vec![0.0; given.len()] };
-        let mut factors = Vec::new();
-        given.iter().for_each(|(_, given)| rows.factors(given, &mut factors));
-        let answers = soft.combine(&rows.half, &factors);
+        let factors: Vec<f64> = given
+            .iter()
+            .flat_map(|(_, given)| given.iter().zip(&rows.signs).map(|(given, sign)| given * sign))
+            .collect();
+        let answers = soft.combine(&rows.half, rows.signs.len(), &factors);
         let is_other: Vec<bool> = self.soft.iter().map(|&node| !is_row(node)).collect();
         let lists = given.iter().enumerate().map(|(list, (time, _))| {
             let nodes =
@@ -516,9 +506,9 @@ impl Body {
         let nodes = front.nodes.len();
         let mut pressure = field.pressure[0].clone();
         let answers = self.soft_factor.as_ref().map(|soft| {
-            let mut factors = Vec::new();
-            rows.factors(&given, &mut factors);
-            soft.combine(&rows.half, &factors)
+            let factors: Vec<f64> =
+                given.iter().zip(&rows.signs).map(|(x, sign)| x * sign).collect();
+            soft.combine(&rows.half, rows.signs.len(), &factors)
         });
         if let Some(answers) = answers {
             for (place, &node) in self.soft.iter().enumerate() {
@@ -530,22 +520,19 @@ impl Body {
         for &(node, [p, gap]) in ended {
             (pressure[node], given_gaps[node]) = (p, gap);
         }
+        let bare = || self.problem.initial_gap().iter().map(|gap| gap - front.approach);
+        let mut base: [Vec<f64>; 2] = [bare().collect(), vec![0.0; nodes]];
         let zero = vec![0.0; nodes];
         self.contact.order().iter().for_each(|&node| pressure[node] = 0.0);
-        let mut gap = zero.clone();
-        self.convolution.apply(&pressure, &mut gap)?;
-        for (gap, initial) in gap.iter_mut().zip(self.problem.initial_gap()) {
-            *gap += initial - front.approach;
-        }
+        self.add_displacement(&mut base, [&pressure, &zero])?;
         if !self.contact.is_empty() {
-            let open: Vec<f64> =
-                gap.iter().zip(&given_gaps).map(|(gap, given)| gap - given).collect();
-            let [solved, _] = self.solve([&open, &zero])?;
+            base[0].iter_mut().zip(&given_gaps).for_each(|(base, gap)| *base -= gap);
+            let [solved, _] = self.solve([&base[0], &zero])?;
             self.contact.order().iter().for_each(|&node| pressure[node] = solved[node]);
-            let mut more = zero.clone();
-            self.convolution.apply(&solved, &mut more)?;
-            gap.iter_mut().zip(&more).for_each(|(gap, more)| *gap += more);
+            base[0].iter_mut().zip(&given_gaps).for_each(|(base, gap)| *base += gap);
+            self.add_displacement(&mut base, [&solved, &zero])?;
         }
+        let [gap, _] = base;
         Ok(Field { pressure: [pressure, zero.clone()], gap: [gap, zero] })
     }
 
@@ -607,14 +594,6 @@ impl Body {
 }
 
 impl Watched {
-    /// Keeps the nodes at some places, with room for more in the matrix, up to `size`.
-    fn keep(&mut self, places: &[usize], size: usize) -> Result<(), Error> {
-        self.schur.copy_part(places, size, &mut self.spare)?;
-        mem::swap(&mut self.schur, &mut self.spare);
-        self.nodes = places.iter().map(|&place| self.nodes[place]).collect();
-        Ok(())
-    }
-
     /// The place of each node of a grid of so many.
     fn places(&self, nodes: usize) -> Vec<Option<usize>> {
         let mut places = vec![None; nodes];

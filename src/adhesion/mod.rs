@@ -65,7 +65,6 @@ mod law;
 mod moment;
 mod path;
 mod plain;
-mod rows;
 mod soft;
 mod state;
 mod target;

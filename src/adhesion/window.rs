@@ -1,12 +1,9 @@
 //! The events of a window: along one parameter, among the nodes that are watched.
 
-use std::mem;
-
 use super::board::{Beginning, Board, Change, LAG, Left, Row};
-use super::front::{Body, Field, Front, Parameter};
+use super::front::{Body, Field, Front, Parameter, Rows};
 use super::law::CohesiveLaw;
 use super::moment::{Moment, Totals};
-use super::rows::Rows;
 use super::state::{AdhesiveEvent, Direction, NodeState};
 use super::target::{Measured, Targets};
 use crate::contact::ContactState;
@@ -23,8 +20,6 @@ const ROUNDING: f64 = 1e-12;
 const TRIES: usize = 60;
 /// Nodes that are watched beside all soft ones.
 const ALONE: usize = 64;
-/// For so many rows one more node is watched, which may be lacking.
-const AHEAD: usize = 4;
 /// A window is opened so often for nodes that it lacks before it is played with fewer events.
 const REOPENED: usize = 3;
 
@@ -64,22 +59,18 @@ pub(super) fn follow(
 ) -> Result<Option<Played>, Error> {
     let mut also = Vec::new();
     let (mut most, mut watched) = (usize::MAX, size);
-    let mut rows = Rows::default();
     for taken_back in 0..TRIES {
-        let before = mem::take(&mut rows);
-        let mut play = Play::open(body, front, field, view, (watched, &also, before))?;
+        let mut play = Play::open(body, front, field, view, (watched, &also))?;
         let may_grow = also.len() < size && taken_back < REOPENED;
         let ended = match play.play_out(body, front, field, (most.min(size), may_grow))? {
             Outcome::Nothing => return Ok(None),
             Outcome::Led(ended) => ended,
             Outcome::Lacks(nodes) => {
                 also.extend(nodes);
-                rows = play.rows;
                 continue;
             }
             Outcome::LacksSoft => {
                 watched = usize::MAX;
-                rows = play.rows;
                 continue;
             }
         };
@@ -201,7 +192,7 @@ impl<'a> Play<'a> {
         front: &Front,
         field: &Field,
         view: &'a View<'a>,
-        (size, also, before): (usize, &[usize], Rows),
+        (size, also): (usize, &[usize]),
     ) -> Result<Self, Error> {
         let line =
             |node: usize| [&field.pressure, &field.gap].map(|pair| [pair[0][node], pair[1][node]]);
@@ -226,20 +217,13 @@ impl<'a> Play<'a> {
             size.saturating_add(also.len())
         };
         let mut horizon = f64::INFINITY;
-        let mut ahead = Vec::new();
         if count < others.len() {
             horizon = others.select_nth_unstable_by(count, order).1.0;
-            let mut later = others.split_off(count);
-            let more = count / AHEAD;
-            if more < later.len() {
-                later.select_nth_unstable_by(more, order);
-                later.truncate(more);
-            }
-            ahead.extend(later.into_iter().map(|(_, node)| node));
+            others.truncate(count);
         }
         nodes.extend(others.iter().map(|&(_, node)| node));
         nodes.sort_unstable();
-        let (answers, rows) = body.rows(front, (&nodes, &ahead), before)?;
+        let (answers, rows) = body.rows(front, &nodes)?;
         let begun: Vec<Row> = nodes
             .iter()
             .map(|&node| {
@@ -448,8 +432,7 @@ impl<'a> Play<'a> {
     fn step(&mut self, most: usize) -> bool {
         let next = self.board.next();
         let until = next.map_or(f64::INFINITY, |(time, _)| time);
-        let [pressures, gaps] = self.board.sums;
-        let [pressure_rate, gap_rate] = self.board.sum_rates();
+        let [[pressures, pressure_rate], [gaps, gap_rate]] = self.moment().sums;
         let measured = Measured {
             approach: self.approach,
             load: [pressures, pressure_rate].map(|sum| self.area() * sum),

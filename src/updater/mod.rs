@@ -27,7 +27,6 @@ mod schur;
 mod solution;
 #[cfg(test)]
 pub(crate) mod test_altered;
-mod tiles;
 mod tuning;
 mod window_factor;
 
@@ -43,8 +42,7 @@ pub(crate) use join::join_all;
 pub(crate) use kept::{Kept, KeptBeside, KeptField};
 pub use schur::Schur;
 pub use solution::Solution;
-pub(crate) use tiles::for_each_tile;
-pub(crate) use tuning::{JOINED, TILE};
+pub(crate) use tuning::JOINED;
 pub use window_factor::WindowFactor;
 
 use std::any::Any;

@@ -4,8 +4,8 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrixView, DMatrixViewMut};
 
-use super::tiles::for_each_tile;
-use crate::{Error, UpdaterError};
+use super::tuning::{PARALLEL, TILE};
+use crate::{Error, UpdaterError, parallel};
 
 /// What remains of the system for k watched nodes once the contact is eliminated: the Schur complement S
 /// (k × k, lower triangle) and the reduced row sums σ.
@@ -88,17 +88,13 @@ impl Schur {
         &self.matrix[j + self.size * j..self.size * (j + 1)]
     }
 
-    /// Makes another one the part of some of the watched nodes, ascending, with room behind it for more, up to `size`.
+    /// The part of some of the watched nodes, ascending, with room behind it for more, up to `size`.
     ///
     /// # Errors
     ///
     /// As for [`Self::resize`].
-    pub(crate) fn copy_part(
-        &self,
-        places: &[usize],
-        size: usize,
-        part: &mut Self,
-    ) -> Result<(), Error> {
+    pub(crate) fn part(&self, places: &[usize], size: usize) -> Result<Self, Error> {
+        let mut part = Self::default();
         part.resize(size.max(places.len()))?;
         for (j, (&column, target)) in
             places.iter().zip(part.matrix.chunks_exact_mut(part.size.max(1))).enumerate()
@@ -108,7 +104,7 @@ impl Schur {
                 *value = values[row - column];
             }
         }
-        Ok(())
+        Ok(part)
     }
 
     /// The columns of S as stored.
@@ -123,15 +119,23 @@ impl Schur {
             return;
         }
         let all = MatRef::from_column_major_slice(columns, k, columns.len() / k);
-        for_each_tile(&mut self.matrix[..k * k], k, |first, target| {
+        let add = |tile: usize, target: &mut [f64]| {
             // What lies above the diagonal in the tile is written and never read.
-            let (rows, width) = (k - first, target.len() / k);
+            let (first, width) = (tile * TILE, target.len() / k);
+            let rows = k - first;
             let target = &mut target[first..];
             let target = MatMut::from_column_major_slice_with_stride_mut(target, rows, width, k);
             let below = all.subrows(first, rows);
             let here = below.subrows(0, width).transpose();
             matmul(target, Accum::Add, below, here, factor, Par::Seq);
-        });
+        };
+        let matrix = &mut self.matrix[..k * k];
+        if k < PARALLEL {
+            let tiles = matrix.chunks_mut(TILE * k).enumerate();
+            tiles.for_each(|(tile, target)| add(tile, target));
+        } else {
+            parallel::for_each_chunk(matrix, TILE * k, add);
+        }
     }
 
     /// Column `j` of S, made whole from the lower triangle.
@@ -147,7 +151,6 @@ impl Schur {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::updater::tuning::{PARALLEL, TILE};
 
     #[test]
     fn a_size_that_no_memory_holds_is_refused() -> Result<(), Error> {

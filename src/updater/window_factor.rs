@@ -220,8 +220,7 @@ impl WindowFactor {
     /// As for [`Schur::resize`].
     pub(crate) fn opened(&self, schur: &Schur, stay: &[usize]) -> Result<Schur, Error> {
         let (count, events, size) = (stay.len(), self.len(), stay.len() + self.len());
-        let mut opened = Schur::default();
-        schur.copy_part(stay, size, &mut opened)?;
+        let mut opened = schur.part(stay, size)?;
         let own = Mat::from_fn(events, events, |i, t| {
             if t <= i { self.column(t)[self.positions[i]] } else { 0.0 }
         });
@@ -411,73 +410,6 @@ mod tests {
                 // A few dozen rounding errors of numbers up to 400.
                 let error = (found - &expected).amax();
                 assert!(error < 1e-12, "{events}: {error:e}");
-            }
-        }
-    }
-
-    /// Nodes that leave a contact, more than a block of them among others: the matrix behind that is the one which a
-    /// dense inverse of the rest of the contact gives, of nodes out of contact, of those that stay in it, and of those
-    /// that left.
-    #[test]
-    fn nodes_that_leave_are_opened() {
-        let (inside, outside) = (BLOCK + 12, 7);
-        let part = |rows: &[usize], columns: &[usize]| {
-            DMatrix::from_fn(rows.len(), columns.len(), |i, j| dominant(rows[i], columns[j]))
-        };
-        // What pressures of nodes out of a contact and gaps of nodes in it make of gaps and pressures.
-        let answers = |contact: &[usize], watched: &[usize]| {
-            let is_in = |node: usize| contact.contains(&node);
-            let coupling = DMatrix::from_fn(contact.len(), watched.len(), |i, j| {
-                let (node, other) = (contact[i], watched[j]);
-                if is_in(other) {
-                    f64::from(u8::from(node == other))
-                } else {
-                    dominant(node, other)
-                }
-            });
-            let own = DMatrix::from_fn(watched.len(), watched.len(), |i, j| {
-                let is_outside = !is_in(watched[i]) && !is_in(watched[j]);
-                if is_outside { dominant(watched[i], watched[j]) } else { 0.0 }
-            });
-            let solved = part(contact, contact).cholesky().unwrap().solve(&coupling);
-            own - coupling.transpose() * solved
-        };
-        let contact: Vec<usize> = (0..inside).collect();
-        // In no order; three in contact are not watched.
-        let watched: Vec<usize> = (0..inside + outside)
-            .map(|k| (k * 29 + 5) % (inside + outside))
-            .filter(|k| k % 17 != 4)
-            .collect();
-        let watched_inside: Vec<usize> =
-            (0..watched.len()).rev().filter(|&place| watched[place] < inside).collect();
-        for events in [0, 1, 3, BLOCK, BLOCK + 5, watched_inside.len()] {
-            let before = answers(&contact, &watched);
-            let mut schur = Schur::default();
-            schur.resize(watched.len()).unwrap();
-            schur.matrix_mut().copy_from(&before);
-            let leaves = &watched_inside[..events];
-            let mut left = WindowFactor::default();
-            left.reset(watched.len(), events);
-            for &place in leaves {
-                left.push(&mut schur, place, -1.0).unwrap();
-            }
-            left.finish(&mut schur);
-            let stay: Vec<usize> =
-                (0..watched.len()).filter(|place| !leaves.contains(place)).collect();
-            let found = left.opened(&schur, &stay).unwrap();
-            let order: Vec<usize> =
-                stay.iter().chain(leaves).map(|&place| watched[place]).collect();
-            let gone: Vec<usize> = leaves.iter().map(|&place| watched[place]).collect();
-            let rest: Vec<usize> =
-                contact.iter().copied().filter(|node| !gone.contains(node)).collect();
-            let expected = answers(&rest, &order);
-            assert_eq!(found.size(), order.len());
-            for j in 0..order.len() {
-                for i in j..order.len() {
-                    // Some dozens of rounding errors of numbers up to 400; pivots of a condition of 1.3.
-                    let error = found.entry(i, j) - expected[(i, j)];
-                    assert!(error.abs() < 1e-11, "{events}: {i} {j} {error:e}");
-                }
             }
         }
     }

@@ -18,20 +18,17 @@ use crate::parallel::{self, vectorized};
 use crate::updater::WindowFactor;
 use crate::updater::tuning::{CACHED_ROWS, LANES, ROWS, UNIT, WIDTH};
 
-/// Room so many times as large as wanted is left for others.
-const TOO_LARGE: usize = 4;
-
 /// The forward-substituted columns `F = L⁻¹C_IP` of the watched nodes P, which grow with the
 /// factor L.
 ///
-/// The columns come in blocks, of which the first ones hold those that were watched before. A block is
+/// The columns come in blocks, of which the first holds those that were watched before. A block is
 /// stored row by row: then products with L run at full speed without repacking L.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Columns {
     rows: usize,
     blocks: Vec<Block>,
-    /// Room of blocks that are no more, for those to come, and the largest of it for columns that follow: pages that
-    /// are new to a process cost as much as a tenth of the products.
+    /// Room of blocks that are no more, for those to come: pages that are new to a process cost as
+    /// much as a tenth of the products.
     spare: Vec<Vec<f64>>,
 }
 
@@ -66,18 +63,17 @@ impl Columns {
             .map_or(usize::MAX, |values| values.saturating_mul(size_of::<f64>()))
     }
 
-    /// Room for so many rows, rounded up, and no more, with whatever was there: a little too large, it is large enough
-    /// for the windows that follow. One that is much too large is left for larger ones.
+    /// Room for so many rows, rounded up, and no more, and none yet: a little too large, it is large enough
+    /// for the windows that follow.
     fn room(&mut self, rows: usize, width: usize) -> Vec<f64> {
         let values = rows.next_multiple_of(ROWS) * width;
         let spare = self.spare.iter().enumerate();
-        let spare = spare.filter(|(_, room)| room.capacity() / TOO_LARGE <= values);
         let nearest = spare.min_by_key(|(_, room)| room.capacity().abs_diff(values));
         let nearest = nearest.map(|(index, _)| index);
         let mut room = nearest.map_or_else(Vec::new, |index| self.spare.swap_remove(index));
-        room.truncate(values);
+        room.clear();
         room.shrink_to(values);
-        room.reserve_exact(values - room.len());
+        room.reserve_exact(values);
         room
     }
 
@@ -85,10 +81,6 @@ impl Columns {
     /// for `new` more.
     pub(super) fn watch(&mut self, kept: &[usize], new: usize) {
         let rows = self.rows;
-        let all: usize = self.blocks.iter().map(|block| block.width).sum();
-        if kept.len() == all && all > 0 {
-            return self.add(new);
-        }
         let old = self.blocks.first().map_or(0, |block| block.width);
         if kept.last().is_some_and(|&last| last >= old) {
             // Some were new the last time, and nothing has touched since.
@@ -114,7 +106,6 @@ impl Columns {
     /// The same where those to keep are in several blocks.
     fn gather(&mut self, kept: &[usize], new: usize) {
         let mut values = self.room(self.rows, kept.len());
-        values.clear();
         let located: Vec<_> = kept.iter().filter_map(|&position| self.locate(position)).collect();
         for row in 0..self.rows {
             values.extend(
@@ -135,13 +126,11 @@ impl Columns {
         for block in 0..blocks {
             let width = end(block + 1) - end(block);
             if width > 0 {
-                let mut values = self.room(rows, width);
-                values.clear();
+                let values = self.room(rows, width);
                 self.blocks.push(Block { width, values });
             }
         }
-        let largest = self.spare.drain(..).max_by_key(Vec::capacity);
-        self.spare.extend(largest);
+        self.spare.clear();
     }
 
     /// Fills the columns from `first` on (the beginning of a block) with right-hand sides and solves
@@ -180,6 +169,19 @@ impl Columns {
                 solve_lower_triangular_in_place(factor.diagonal(p), here, Par::Seq);
             }
         });
+    }
+
+    /// `x ← L⁻¹ x` for some right-hand sides.
+    pub(super) fn solve<const N: usize>(factor: &Panels, x: &mut [[f64; N]]) {
+        let mut columns = Self::default();
+        columns.watch(&[], N);
+        columns.forward_substitute(factor, 0, |row, first, values| {
+            values.copy_from_slice(&x[row][first..first + values.len()]);
+        });
+        let solved = columns.blocks.iter().flat_map(|block| block.values.chunks(block.width));
+        for (x, solved) in x.iter_mut().zip(solved) {
+            x.copy_from_slice(solved);
+        }
     }
 
     /// `L⁻ᵀ F` for the columns at some positions. Columns are independent, so that the result does not depend on how many

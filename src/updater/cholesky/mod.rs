@@ -15,6 +15,7 @@ use super::{JOINED, Left, LinearUpdater, Schur, Solution, WindowFactor, check_co
 use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
+use columns::Columns;
 use factor::Factor;
 
 /// The Cholesky factor of the contact's influence matrix, grown by one row for each node that touches
@@ -72,8 +73,7 @@ impl RecursiveCholesky {
     }
 
     /// The same as [`watch_both`](LinearUpdater::watch_both), where nodes in contact have their positions and come in
-    /// any order, and `schur` has the matrix of the first `known` of them, those that were watched before. Afterwards
-    /// there are solutions [for given right-hand sides](LinearUpdater::solve_for) only.
+    /// any order, and `schur` has the matrix of the first `known` of them, those that were watched before.
     pub(crate) fn watch_beside(
         &mut self,
         problem: &Problem,
@@ -82,12 +82,18 @@ impl RecursiveCholesky {
         known: usize,
         schur: &mut Schur,
     ) -> Result<(), Error> {
+        self.factor.eliminate(problem, contact, watched, known, schur)?;
+        // Row sums are not asked for.
         self.reduced.clear();
-        self.factor.eliminate(problem, contact, watched, known, schur)
+        self.reduced.extend(watched.iter().map(|&(node, position)| {
+            position.map_or_else(|| problem.rhs(node), |_| [0.0; Problem::RHS])
+        }));
+        self.factor.columns.subtract_products(&self.border, &mut self.reduced);
+        Ok(())
     }
 
     /// Forgets nodes that left the contact as [`release`](LinearUpdater::release) does, but the watched nodes stay
-    /// watched, and those that left are too, behind the others. Solutions as after [`Self::watch_beside`].
+    /// watched, and those that left are too, behind the others.
     pub(crate) fn release_watched(
         &mut self,
         problem: &Problem,
@@ -95,19 +101,15 @@ impl RecursiveCholesky {
         left: &[Left],
     ) -> Result<(), Error> {
         problem.check_nodes(contact.order())?;
-        self.border.clear();
-        self.factor.release_watched(contact, left)
+        self.factor.release_watched(contact, left)?;
+        self.renew_border(problem, contact);
+        Ok(())
     }
 
     fn renew_border(&mut self, problem: &Problem, contact: &ContactSequence) {
-        let order = contact.order();
-        let mut rhs =
-            [0, 1, 2].map(|k| order.iter().map(|&node| problem.rhs(node)[k]).collect::<Vec<_>>());
-        self.factor.panels.solve(rhs.each_mut().map(|values| &mut values[..]));
-        let [gap, unit, sums] = &rhs;
         self.border.clear();
-        let rows = gap.iter().zip(unit).zip(sums);
-        self.border.extend(rows.map(|((gap, unit), sum)| [*gap, *unit, *sum]));
+        self.border.extend(contact.order().iter().map(|&node| problem.rhs(node)));
+        Columns::solve(&self.factor.panels, &mut self.border);
     }
 
     /// Where the time went so far.
@@ -214,13 +216,7 @@ impl LinearUpdater for RecursiveCholesky {
             (contact.order().get(position).copied().unwrap_or(usize::MAX), Some(position))
         });
         let watched: Vec<_> = outside.chain(inside).collect();
-        self.watch_beside(problem, contact, &watched, 0, schur)?;
-        // Row sums are not asked for.
-        self.reduced.extend(watched.iter().map(|&(node, position)| {
-            position.map_or_else(|| problem.rhs(node), |_| [0.0; Problem::RHS])
-        }));
-        self.factor.columns.subtract_products(&self.border, &mut self.reduced);
-        Ok(())
+        self.watch_beside(problem, contact, &watched, 0, schur)
     }
 
     fn relief(
@@ -246,8 +242,8 @@ impl LinearUpdater for RecursiveCholesky {
         check_count(self.factor.len(), rhs.len())?;
         let start = Stopwatch::start();
         let panels = &self.factor.panels;
+        Columns::solve(panels, rhs);
         let [mut first, mut second] = [0, 1].map(|k| rhs.iter().map(|x| x[k]).collect::<Vec<_>>());
-        panels.solve([&mut first[..], &mut second[..]]);
         panels.solve_transposed([&mut first[..], &mut second[..]]);
         for (x, solved) in rhs.iter_mut().zip(first.into_iter().zip(second)) {
             *x = solved.into();

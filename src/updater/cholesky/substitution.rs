@@ -1,14 +1,13 @@
-//! Forward and backward substitution of a few right-hand sides, at the speed of memory.
+//! Backward substitution of a few right-hand sides, at the speed of memory.
 //!
-//! Backwards the factor is read once for all right-hand sides, in groups of panels. While one thread solves the
+//! The factor is read once for all right-hand sides, in groups of panels. While one thread solves the
 //! triangle of a group, the others multiply the rest of the group before, so that nobody waits.
 
-use std::mem;
 use std::ops::{Deref, Range};
 
 use super::operations;
 use super::panels::Panels;
-use super::products::{subtract_products, subtract_transposed};
+use super::products::subtract_transposed;
 use crate::parallel::{self, vectorized};
 use crate::updater::tuning::{COLUMNS_AT_ONCE, GROUP, ROWS, SMALL};
 
@@ -16,45 +15,6 @@ use crate::updater::tuning::{COLUMNS_AT_ONCE, GROUP, ROWS, SMALL};
 const GROUP_ROWS: usize = GROUP * ROWS;
 
 impl Panels {
-    /// Solves `L x = b` in place for right-hand sides of as many rows.
-    pub(super) fn solve<const N: usize>(&self, mut x: [&mut [f64]; N]) {
-        for p in 0..self.len() {
-            let (first, count, width) = (p * ROWS, self.rows_in(p), (p + 1) * ROWS);
-            let panel = self.panel(p);
-            let mut known: [&[f64]; N] = [&[]; N];
-            let mut here = x.each_mut().map(|x| &mut **x);
-            for (known, x) in known.iter_mut().zip(&mut here) {
-                let (before, rest) = mem::take(x).split_at_mut(first);
-                (*known, *x) = (before, &mut rest[..count]);
-            }
-            let mut rest = here.each_mut().map(|x| &mut **x);
-            let rows: Vec<usize> = (0..count).step_by(SMALL).collect();
-            let mut pieces: Vec<_> = rows
-                .into_iter()
-                .map(|row| {
-                    (
-                        row,
-                        rest.each_mut()
-                            .map(|x| x.split_off_mut(..SMALL.min(count - row)).unwrap_or_default()),
-                    )
-                })
-                .collect();
-            let work = operations::reading(count, first);
-            parallel::for_each(work, &mut pieces, |(row, x)| {
-                let x = x.each_mut().map(|x| &mut **x);
-                subtract_products(&panel[*row * width..], width, known, x);
-            });
-            for r in 0..count {
-                let row = &panel[r * width + first..][..=r];
-                for x in &mut here {
-                    let (earlier, here) = x.split_at_mut(r);
-                    subtract_products(row, width, [earlier], [&mut here[..1]]);
-                    here[0] /= row[r];
-                }
-            }
-        }
-    }
-
     /// Solves `Lᵀ x = b` in place for right-hand sides of the same length, with the leading part
     /// of L that has as many rows.
     pub(super) fn solve_transposed<const N: usize>(&self, x: [&mut [f64]; N]) {
@@ -182,11 +142,11 @@ fn length<X: Deref<Target = [f64]>>(x: &[X]) -> usize {
 mod tests {
     use super::*;
 
-    /// Small triangles, panels and groups of them, at their borders; with three groups threads share the work.
-    /// Backwards the factor is that of many more rows. Its diagonal is 4, and beside it are powers of 1/2: each
-    /// solution, of small integers, comes back but for a few rounding errors.
+    /// Small triangles, panels and groups of them, at their borders; with three groups threads share the work. The
+    /// factor is that of many more rows. Its diagonal is 4, and beside it are powers of 1/2: each solution, of small
+    /// integers, comes back but for a few rounding errors.
     #[test]
-    fn factors_are_solved_forwards_and_backwards() {
+    fn factors_are_solved_backwards() {
         let entry = |r: usize, c: usize| match r - c {
             0 => 4.0,
             d if (r + 3 * c).is_multiple_of(5) => (-(d.min(40) as f64)).exp2(),
@@ -225,19 +185,6 @@ mod tests {
             for (k, values) in solved.iter().enumerate() {
                 for (c, value) in values.iter().enumerate() {
                     // Rows below a diagonal of 4 sum up to 1: errors of 10⁻¹⁵ do not grow.
-                    assert!((value - x(k, c)).abs() < 1e-13, "{count}: {c} {value}");
-                }
-            }
-            let mut solved: [Vec<f64>; 2] = [0, 1].map(|k| {
-                let product = |r: usize| (0..=r).map(|c| entry(r, c) * x(k, c)).sum();
-                (0..count).map(product).collect()
-            });
-            let [first, second] = &mut solved;
-            let mut own = panels.clone();
-            own.truncate(count);
-            own.solve([first, second]);
-            for (k, values) in solved.iter().enumerate() {
-                for (c, value) in values.iter().enumerate() {
                     assert!((value - x(k, c)).abs() < 1e-13, "{count}: {c} {value}");
                 }
             }

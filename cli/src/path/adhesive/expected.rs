@@ -8,8 +8,8 @@ use super::super::job::Job;
 
 /// Of 128² and 256² nodes at 10 % of contact, with w = 10⁻⁴ E* times the side: the time of a branch over that of the
 /// path without adhesion to as many nodes, and what it holds over what that holds.
-const SLOWER: f64 = 14.0;
-const LARGER: f64 = 4.5;
+const SLOWER: f64 = 11.0;
+const LARGER: f64 = 3.0;
 
 /// What a path will take. At a load or an approach, the contact is that without adhesion, which is less.
 ///
