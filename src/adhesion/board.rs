@@ -14,7 +14,8 @@ const TIE: f64 = 1e-13;
 /// By how much a gap may be beside a corner of the law, relative to the range.
 const CORNER: f64 = 1e-11;
 
-/// How far a pull may be from its law where a node that is carried is put on that, relative to the stress.
+/// How far a pull may be from its law where a node that is carried is put on that, and from an end of the law where a
+/// node is held there, relative to the stress. Energies are stationary at the law: they miss its square.
 pub(super) const LAG: f64 = 1e-10;
 
 /// A watched node.
@@ -229,8 +230,12 @@ impl Board {
         }
     }
 
-    /// Holds the traction of a row.
+    /// Holds the traction of a row: at an end of the law that it ties with, or else what rounding made of it would grow
+    /// from each node that turns unstable there to the next.
     fn hold(&mut self, place: usize, pull: f64) {
+        let stress = self.law.stress();
+        let end = [0.0, stress].into_iter().find(|end| (pull - end).abs() <= LAG * stress);
+        let pull = end.unwrap_or(pull);
         self.change(place, NodeState::Held);
         self.rows[place].pressure = -pull;
         self.held.push((self.rows[place].node, pull));

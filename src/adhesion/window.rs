@@ -77,9 +77,10 @@ pub(super) fn follow(
         play.add_energies(body, field);
         body.follow(&ended)?;
         let found = body.survey(&ended, view.direction.sign());
+        let is_least = play.events <= 1 || most.min(size) <= 1;
         let wrong = match &found {
             Ok(field) => beyond(body, &ended, field),
-            Err(Error::FactorizationFailed { .. }) if play.events > 1 => vec![(usize::MAX, 1.0)],
+            Err(Error::FactorizationFailed { .. }) if !is_least => vec![(usize::MAX, 1.0)],
             Err(_) => Vec::new(),
         };
         let field = match (wrong.is_empty(), found) {
@@ -88,7 +89,7 @@ pub(super) fn follow(
                 body.go_back(front)?;
                 let (node, value) = wrong[0];
                 let is_new = wrong.iter().any(|(node, _)| !also.contains(node));
-                if play.events <= 1 && !is_new {
+                if is_least && !is_new {
                     let (ix, iy) = body.problem.grid().coordinates(node);
                     return Err(AdhesionError::NotOnLaw {
                         ix,
@@ -339,13 +340,18 @@ impl<'a> Play<'a> {
             let rows: Vec<_> = rows.collect();
             let found = body.preview(&ended, (field, alone), &self.rows, (&rows, self.given()))?;
             let wrong = beyond(body, &ended, &found);
-            if wrong.is_empty() || self.events == 1 && !may_grow {
+            if wrong.is_empty() {
                 return Ok(Outcome::Led(ended));
             }
             let lacks: Vec<usize> =
                 wrong.iter().map(|&(node, _)| node).filter(|&node| !self.is_row(node)).collect();
             if may_grow && !lacks.is_empty() {
                 return Ok(Outcome::Lacks(lacks));
+            }
+            // There are no fewer: behind its last event a node that is carried may be found to be on its law, which
+            // counts as one more.
+            if self.events == 1 || most == 1 {
+                return Ok(Outcome::Led(ended));
             }
             // Gaps fall faster and faster on loading: a line comes too early.
             let crossings = wrong.iter().map(|&(node, after)| {

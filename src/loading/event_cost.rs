@@ -1,6 +1,9 @@
 //! What events cost with a factor and without, and when the rest of a path is cheaper without.
 
-use super::tuning::{CHECKED, FACTOR, HANDOVER, ITERATIONS, RELEASE, SAVED, STEP, WINDOW};
+use super::tuning::{
+    CHECKED, FACTOR, HANDOVER, ITERATIONS, RELEASE_BY_ITERATIONS, RELEASE_WITH_FACTOR, SAVED,
+    WINDOW,
+};
 
 /// Seconds that an event with a factor of so many nodes takes on a machine with two cores: for telling how long a path
 /// will take.
@@ -92,7 +95,7 @@ impl Rest {
         let event = match self.releases {
             None => FACTOR * square,
             Some(part) => {
-                let [solution, convolution] = STEP;
+                let [solution, convolution] = RELEASE_WITH_FACTOR;
                 let release = solution * square + convolution * self.nodes as f64;
                 CHECKED * FACTOR * square + part * release
             }
@@ -105,7 +108,7 @@ impl Rest {
         // Linear in the contact: the mean is that of its middle.
         let in_windows =
             0.5 * (iteration_seconds(self.nodes, from) + iteration_seconds(self.nodes, to));
-        let of_releases = self.releases.unwrap_or(0.0) * RELEASE * self.nodes as f64;
+        let of_releases = self.releases.unwrap_or(0.0) * RELEASE_BY_ITERATIONS * self.nodes as f64;
         self.events * (in_windows + of_releases)
     }
 }

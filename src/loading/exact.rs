@@ -363,8 +363,7 @@ impl Exact {
             let events = self.window.events().len();
             let stand = at_start.before_others(run, (&self.window, events), overlap);
             if stand < events {
-                self.window.truncate(stand);
-                run.timings.taken_back += events - stand;
+                self.truncate(run, stand);
                 run.cut(updater, count + stand)?;
             }
         }
@@ -375,6 +374,12 @@ impl Exact {
         log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
         self.is_behind = false;
         Ok(())
+    }
+
+    /// Keeps the first events of the window only.
+    fn truncate(&mut self, run: &mut LoadingRun, stand: usize) {
+        run.timings.taken_back += self.window.events().len() - stand;
+        self.window.truncate(stand);
     }
 
     /// The time of the last event.
@@ -398,8 +403,7 @@ impl Exact {
         let later = events.iter().rev().take_while(|event| event.time > until).count();
         let dropped = later.max(*fewest).min(events.len() - 1);
         *fewest *= 2;
-        self.window.truncate(events.len() - dropped);
-        run.timings.taken_back += dropped;
+        self.truncate(run, events.len() - dropped);
         dropped
     }
 

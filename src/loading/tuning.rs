@@ -243,10 +243,10 @@ pub(super) const FACTOR: f64 = 1.0e-11;
 pub(super) const CHECKED: f64 = 2.5;
 /// Seconds of a node that leaves: per n², two solutions, for a window ends before it, and the rotations of the factor, and
 /// per node of the grid two convolutions of two fields.
-pub(super) const STEP: [f64; 2] = [2.0e-9, 1.0e-7];
+pub(super) const RELEASE_WITH_FACTOR: [f64; 2] = [2.0e-9, 1.0e-7];
 /// Seconds that a node that leaves takes by iterations, per node of the grid: windows end before it, and it has a
 /// solution of its own.
-pub(super) const RELEASE: f64 = 2.0e-6;
+pub(super) const RELEASE_BY_ITERATIONS: f64 = 2.0e-6;
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what goes with
 /// them on the contact. An event takes 1.1 ms on 512² with 47 % in contact, and 2.3 ms with 95 %. With a factor the
 /// path needs the most memory where it is given up: 3.3 times as great the first number, and 1.5 times the second, made

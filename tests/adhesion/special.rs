@@ -79,6 +79,42 @@ fn flat_surface() {
     assert!((unloading.pull_off() / stress - 1.0).abs() < 1e-9, "{}", unloading.pull_off());
 }
 
+/// The same with long cells, whose nodes turn unstable one behind the other at one instant, so that what rounding makes
+/// of the first could grow up to the last, whatever the windows are.
+#[test]
+fn flat_surfaces_of_long_cells() {
+    let sizes = [1, 2, 9, 40].map(Some);
+    let shapes = [(8, 1), (32, 1), (64, 1), (9, 7)].map(|shape| (shape, &sizes[..]));
+    for ((nodes, rows), sizes) in shapes.into_iter().chain([
+        ((16, 16), &[None][..]),
+        ((24, 24), &[None]),
+        ((40, 10), &[None]),
+    ]) {
+        let grid = Grid::new(nodes, rows, 7.0, 1.0).unwrap();
+        let kernel = PeriodicBoussinesq::new(grid, 1.0).unwrap();
+        let surface = HeightMap::new(DMatrix::zeros(nodes, rows)).unwrap();
+        for &size in sizes {
+            let law = Adhesion::work(1e-3);
+            let builder = AdhesivePath::builder(&surface, &kernel, law);
+            let builder = size.into_iter().fold(builder, |builder, size| builder.window_size(size));
+            let mut path = builder.until(ContactTarget::AreaFraction(1.0)).build().unwrap();
+            path.run().unwrap();
+            path.unload().unwrap();
+            let unloading = path.run().unwrap();
+            let force = path.law().stress() * grid.nominal_area();
+            let part = unloading.pull_off() / force;
+            assert!((part - 1.0).abs() < 1e-9, "{nodes} {size:?}: {part}");
+            let state = unloading.states().last().unwrap();
+            let apart = (state.contact.contact_nodes, state.soft_nodes, state.contact.load);
+            assert_eq!(apart, (0, 0, 0.0), "{nodes} {size:?}: {state:?}");
+            // As the driver asks of energies: rounding, with three digits to spare.
+            let work = path.law().work() * grid.nominal_area();
+            let left = state.work - state.contact.energy - state.dissipated;
+            assert!(left.abs() < 1e-9 * work, "{nodes} {size:?}: {left:e} of {work:e}");
+        }
+    }
+}
+
 /// A flat cylinder comes to Kendall's force, √(8π E* w a³), from below as the cells, and with them the range, become
 /// shorter.
 #[test]

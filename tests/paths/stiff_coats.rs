@@ -56,40 +56,71 @@ const CASES: [([f64; 4], u64); 9] = [
     ([48.0, 10.0, 4.0, 4.0], 11),
 ];
 
+/// A case on one of both half-spaces.
+struct Case {
+    name: String,
+    surface: SelfAffine,
+    kernel: Layered,
+    nodes: usize,
+    exact: Vec<LoadingState>,
+}
+
+impl Case {
+    fn all() -> impl Iterator<Item = Self> {
+        CASES.into_iter().flat_map(|case| [true, false].map(|is_free| Self::of(case, is_free)))
+    }
+
+    fn of(([n, ratio, thickness, shortest], seed): ([f64; 4], u64), is_free: bool) -> Self {
+        let kernel = coated(n as usize, ratio, thickness, is_free);
+        let amplitude = Amplitude::RmsHeight(1.0);
+        let surface = SelfAffine::new(0.8, 0.5 * n, shortest, amplitude, seed).unwrap();
+        let nodes = (0.9 * n * n) as usize;
+        let exact = of_single_events(&surface, &kernel, nodes);
+        let name = format!("{n} {ratio} {thickness} {shortest} {seed} {is_free}");
+        Self { name, surface, kernel, nodes, exact }
+    }
+
+    /// The path of an updater, whose events have to be those of single events, and its states beside the exact ones.
+    fn followed<U: LinearUpdater>(&self, updater: U) -> (LoadingSolver<U>, Vec<[LoadingState; 2]>) {
+        let (path, found) = followed(&self.surface, &self.kernel, updater, self.nodes);
+        assert_eq!(found.len(), self.exact.len(), "{}", self.name);
+        let pairs = found.into_iter().zip(&self.exact).map(|(found, &exact)| [found, exact]);
+        let pairs: Vec<[LoadingState; 2]> = pairs.collect();
+        for pair in &pairs {
+            let [found, exact] = pair.map(|s| (s.event, s.node, s.step, s.contact.contact_nodes));
+            assert_eq!(found, exact, "{}", self.name);
+        }
+        (path, pairs)
+    }
+
+    fn releases(&self) -> usize {
+        self.exact.iter().filter(|state| state.event == ContactEvent::Release).count()
+    }
+}
+
 /// With a factor windows are what single events are, to rounding: sums over 2000 events of numbers that are right to some
 /// 10⁻¹⁵ of the last.
 #[test]
 fn windows_with_a_factor_are_single_events() {
     let (mut releases, mut windows, mut events) = (0, 0, 0);
-    for ([n, ratio, thickness, shortest], seed) in CASES {
-        for is_free in [true, false] {
-            let kernel = coated(n as usize, ratio, thickness, is_free);
-            let amplitude = Amplitude::RmsHeight(1.0);
-            let surface = SelfAffine::new(0.8, 0.5 * n, shortest, amplitude, seed).unwrap();
-            let nodes = (0.9 * n * n) as usize;
-            let exact = of_single_events(&surface, &kernel, nodes);
-            let (path, found) = followed(&surface, &kernel, RecursiveCholesky::new(), nodes);
-            let case = format!("{n} {ratio} {thickness} {shortest} {seed} {is_free}");
-            assert_eq!(found.len(), exact.len(), "{case}");
-            let [first, last] = [exact[0], exact[exact.len() - 1]].map(|state| state.contact);
-            for (found, exact) in found.iter().zip(&exact) {
-                assert_eq!((found.event, found.node), (exact.event, exact.node), "{case}");
-                assert_eq!(found.step, exact.step);
-                let (a, b) = (found.contact, exact.contact);
-                assert_eq!(a.contact_nodes, b.contact_nodes);
-                for (a, b, scale) in [
-                    (a.approach, b.approach, last.approach),
-                    (a.load, b.load, last.load),
-                    (a.energy, b.energy, last.energy),
-                    (a.mean_gap, b.mean_gap, first.mean_gap),
-                ] {
-                    assert!((a - b).abs() <= 1e-11 * scale, "{case}: {a:e} {b:e}: {found:?}");
-                }
+    for case in Case::all() {
+        let (path, states) = case.followed(RecursiveCholesky::new());
+        let [first, last] =
+            [case.exact[0], case.exact[case.exact.len() - 1]].map(|state| state.contact);
+        for [found, exact] in &states {
+            let (a, b) = (found.contact, exact.contact);
+            for (a, b, scale) in [
+                (a.approach, b.approach, last.approach),
+                (a.load, b.load, last.load),
+                (a.energy, b.energy, last.energy),
+                (a.mean_gap, b.mean_gap, first.mean_gap),
+            ] {
+                assert!((a - b).abs() <= 1e-11 * scale, "{}: {a:e} {b:e}: {found:?}", case.name);
             }
-            releases += exact.iter().filter(|s| s.event == ContactEvent::Release).count();
-            windows += path.timings().windows;
-            events += found.len();
         }
+        releases += case.releases();
+        windows += path.timings().windows;
+        events += states.len();
     }
     println!("{events} events, {releases} releases, {windows} windows");
     assert!(releases > 100, "{releases}");
@@ -102,30 +133,18 @@ fn windows_with_a_factor_are_single_events() {
 #[test]
 fn windows_have_the_events_of_single_steps() {
     let (mut releases, mut events, mut convolutions) = (0, 0, 0);
-    for ([n, ratio, thickness, shortest], seed) in CASES {
-        for is_free in [true, false] {
-            let kernel = coated(n as usize, ratio, thickness, is_free);
-            let amplitude = Amplitude::RmsHeight(1.0);
-            let surface = SelfAffine::new(0.8, 0.5 * n, shortest, amplitude, seed).unwrap();
-            let nodes = (0.9 * n * n) as usize;
-            let exact = of_single_events(&surface, &kernel, nodes);
-            let (path, found) = followed(&surface, &kernel, ConjugateGradient::new(), nodes);
-            let case = format!("{n} {ratio} {thickness} {shortest} {seed} {is_free}");
-            assert_eq!(found.len(), exact.len(), "{case}");
-            for (found, exact) in found.iter().zip(&exact) {
-                assert_eq!((found.event, found.node), (exact.event, exact.node), "{case}");
-                assert_eq!(found.step, exact.step);
-                assert_eq!(found.contact.contact_nodes, exact.contact.contact_nodes);
-                let error = (found.contact.approach - exact.contact.approach).abs();
-                let allowed = found.approach_error + 1e-10 * exact.contact.approach;
-                assert!(error <= allowed, "{case}: {error:e} of {allowed:e}: {found:?}");
-                let error = (found.contact.load / exact.contact.load - 1.0).abs();
-                assert!(found.step < 10 || error < 1e-4, "{case}: {error:e}: {found:?}");
-            }
-            releases += exact.iter().filter(|s| s.event == ContactEvent::Release).count();
-            events += found.len();
-            convolutions += path.convolutions().unwrap();
+    for case in Case::all() {
+        let (path, states) = case.followed(ConjugateGradient::new());
+        for [found, exact] in &states {
+            let error = (found.contact.approach - exact.contact.approach).abs();
+            let allowed = found.approach_error + 1e-10 * exact.contact.approach;
+            assert!(error <= allowed, "{}: {error:e} of {allowed:e}: {found:?}", case.name);
+            let error = (found.contact.load / exact.contact.load - 1.0).abs();
+            assert!(found.step < 10 || error < 1e-4, "{}: {error:e}: {found:?}", case.name);
         }
+        releases += case.releases();
+        events += states.len();
+        convolutions += path.convolutions().unwrap();
     }
     println!("{events} events, {releases} releases, {convolutions} convolutions");
     assert!(releases > 100, "{releases}");
