@@ -185,11 +185,18 @@ impl Trial<'_> {
     fn go(&mut self, to: f64, extreme: Extreme) -> Result<Option<AdhesiveFields>, Stop> {
         let present = self.path.state().map_or(f64::NEG_INFINITY, |s| s.contact.approach);
         let target = ContactTarget::Approach(to);
-        match to >= present {
+        let is_loading = to >= present;
+        match is_loading {
             true => self.path.load_to(target),
             false => self.path.unload_to(target),
         }?;
         self.follow()?;
+        // A jump may have led mean planes beyond where the walk was to go.
+        let extreme = match extreme {
+            Extreme::Greatest if !is_loading => Extreme::Neither,
+            Extreme::Least if is_loading => Extreme::Neither,
+            _ => extreme,
+        };
         let Some(state) = self.path.state().filter(|state| state.event == AdhesiveEvent::Limit)
         else {
             return Ok(None);

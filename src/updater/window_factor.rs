@@ -457,4 +457,115 @@ mod tests {
             [0, 784, usize::MAX]
         );
     }
+
+    /// Nodes that leave a contact, more than a block of them among others: the matrix behind that is the one which a
+    /// dense inverse of the rest of the contact gives, of nodes out of contact, of those that stay in it, and of those
+    /// that left.
+    #[test]
+    fn nodes_that_leave_are_opened() {
+        let (inside, outside) = (BLOCK + 12, 7);
+        let part = |rows: &[usize], columns: &[usize]| {
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| dominant(rows[i], columns[j]))
+        };
+        // What pressures of nodes out of a contact and gaps of nodes in it make of gaps and pressures.
+        let answers = |contact: &[usize], watched: &[usize]| {
+            let is_in = |node: usize| contact.contains(&node);
+            let coupling = DMatrix::from_fn(contact.len(), watched.len(), |i, j| {
+                let (node, other) = (contact[i], watched[j]);
+                if is_in(other) {
+                    f64::from(u8::from(node == other))
+                } else {
+                    dominant(node, other)
+                }
+            });
+            let own = DMatrix::from_fn(watched.len(), watched.len(), |i, j| {
+                let is_outside = !is_in(watched[i]) && !is_in(watched[j]);
+                if is_outside { dominant(watched[i], watched[j]) } else { 0.0 }
+            });
+            let solved = part(contact, contact).cholesky().unwrap().solve(&coupling);
+            own - coupling.transpose() * solved
+        };
+        let contact: Vec<usize> = (0..inside).collect();
+        // In no order; three in contact are not watched.
+        let watched: Vec<usize> = (0..inside + outside)
+            .map(|k| (k * 29 + 5) % (inside + outside))
+            .filter(|k| k % 17 != 4)
+            .collect();
+        let watched_inside: Vec<usize> =
+            (0..watched.len()).rev().filter(|&place| watched[place] < inside).collect();
+        for events in [0, 1, 3, BLOCK, BLOCK + 5, watched_inside.len()] {
+            let before = answers(&contact, &watched);
+            let mut schur = Schur::default();
+            schur.resize(watched.len()).unwrap();
+            schur.matrix_mut().copy_from(&before);
+            let leaves = &watched_inside[..events];
+            let mut left = WindowFactor::default();
+            left.reset(watched.len(), events);
+            for &place in leaves {
+                left.push(&mut schur, place, -1.0).unwrap();
+            }
+            left.finish(&mut schur);
+            let stay: Vec<usize> =
+                (0..watched.len()).filter(|place| !leaves.contains(place)).collect();
+            let found = left.opened(&schur, &stay).unwrap();
+            let order: Vec<usize> =
+                stay.iter().chain(leaves).map(|&place| watched[place]).collect();
+            let gone: Vec<usize> = leaves.iter().map(|&place| watched[place]).collect();
+            let rest: Vec<usize> =
+                contact.iter().copied().filter(|node| !gone.contains(node)).collect();
+            let expected = answers(&rest, &order);
+            assert_eq!(found.size(), order.len());
+            for j in 0..order.len() {
+                for i in j..order.len() {
+                    // Some dozens of rounding errors of numbers up to 400; pivots of a condition of 1.3.
+                    let error = found.entry(i, j) - expected[(i, j)];
+                    assert!(error.abs() < 1e-11, "{events}: {i} {j} {error:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn events_that_are_forgotten_can_be_others() {
+        let mut schur = two_by_two();
+        let mut touched = WindowFactor::default();
+        touched.reset(2, 2);
+        assert!(touched.is_empty() && !touched.has_touched(1));
+        touched.push(&mut schur, 1, 1.0).unwrap();
+        touched.push(&mut schur, 0, 1.0).unwrap();
+        assert!(touched.has_touched(0) && touched.has_touched(1));
+        touched.truncate(1);
+        assert_eq!(touched.positions(), [1]);
+        assert!(!touched.has_touched(0));
+        assert_eq!([touched.factor(1, 0), touched.factor(0, 1)], [5.0_f64.sqrt(), 0.0]);
+        touched.push(&mut schur, 0, 1.0).unwrap();
+        // 4 − 2²/5.
+        assert!((touched.factor(0, 1) - 3.2_f64.sqrt()).abs() < 1e-15);
+        touched.reset(3, 3);
+        assert_eq!((touched.watched(), touched.len()), (3, 0));
+    }
+
+    /// What is left of a pivot is 1 − 1, 1/2 − 1, or no number at all. Then the node has not touched.
+    #[test]
+    fn pivots_are_positive() {
+        for (own, pivot) in [(1.0, 0.0), (0.5, -0.5), (f64::NAN, f64::NAN)] {
+            let mut schur = two_by_two();
+            schur.as_mut_slice()[3] = own;
+            let mut touched = WindowFactor::default();
+            touched.reset(2, 2);
+            touched.push(&mut schur, 0, 1.0).unwrap();
+            let refused = touched.push(&mut schur, 1, 1.0).unwrap_err();
+            assert!(refused == pivot || refused.is_nan() && pivot.is_nan(), "{refused}");
+            assert_eq!((touched.len(), touched.factor(1, 1)), (1, 0.0));
+        }
+    }
+
+    /// Two matrices of 7 × 7 numbers.
+    #[test]
+    fn bytes_are_those_of_matrix_and_factor() {
+        assert_eq!(
+            [WindowFactor::bytes(0), WindowFactor::bytes(7), WindowFactor::bytes(usize::MAX)],
+            [0, 784, usize::MAX]
+        );
+    }
 }

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::updater::cholesky::panels::remove_and;
 use crate::updater::{Schur, dominant};
 
 /// Rows of a factor: a whole panel, and a part of one.
@@ -204,4 +205,53 @@ fn nodes_that_touch_become_rows() {
     columns.truncate(ROWS_HERE + 2);
     assert_eq!(columns.rows, ROWS_HERE + 2);
     grown(&columns, ROWS_HERE + 2);
+}
+
+/// Behind rows that leave, the remaining factor times the columns is what the whole factor made of them, without these
+/// rows; and times the columns of the nodes that left it is their rows of the matrix.
+#[test]
+fn columns_follow_a_factor_that_loses_rows() {
+    let whole = factor();
+    let row = |r: usize| whole.row(r);
+    let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    // Both ends, a border of panels, one row alone, and so many that their columns fill a block and more.
+    let many: Vec<usize> = (0..ROWS_HERE).filter(|row| row % 5 < 3).collect();
+    for positions in [&[0, 17, 255, 256, ROWS_HERE - 1][..], &[100], &[ROWS_HERE - 1], &many, &[]] {
+        let mut panels = whole.clone();
+        let mut columns = Columns { rows: ROWS_HERE, ..Columns::default() };
+        let numbers: Vec<usize> = (0..350).collect();
+        watch(&mut columns, &panels, &[], &numbers);
+        // Of all blocks.
+        let kept: Vec<usize> = numbers.iter().copied().filter(|number| number % 3 != 1).collect();
+        let leaving: Vec<Vec<f64>> = positions.iter().map(|&r| row(r).to_vec()).collect();
+        let mut rotations = Vec::new();
+        remove_and(&mut panels, positions, |column| rotations.push(column));
+        columns.leave(&kept, positions, &leaving, &rotations);
+        let rest: Vec<usize> = (0..ROWS_HERE).filter(|row| !positions.contains(row)).collect();
+        assert_eq!((panels.rows(), columns.rows), (rest.len(), rest.len()));
+        let right = |r: usize, place: usize| match kept.get(place) {
+            Some(&number) => (0..=r).map(|c| entry(r, c) * solution(c, number)).sum(),
+            None => inner(row(r), row(positions[place - kept.len()])),
+        };
+        let count = kept.len() + positions.len();
+        let check = |columns: &Columns, places: &[usize]| {
+            for (position, &place) in places.iter().enumerate() {
+                let (block, column) = columns.locate(position).unwrap();
+                let values: Vec<f64> =
+                    block.values.iter().skip(column).step_by(block.width).copied().collect();
+                assert_eq!(values.len(), rest.len());
+                for (k, &r) in rest.iter().enumerate() {
+                    let error = inner(panels.row(k), &values) - right(r, place);
+                    // Rounding errors of some hundred numbers up to 20, rotated some hundred times.
+                    assert!(error.abs() < 1e-12, "{positions:?}: {place} {r} {error:e}");
+                }
+            }
+            assert!(columns.locate(places.len()).is_none());
+        };
+        check(&columns, &(0..count).collect::<Vec<_>>());
+        // They are known again when some of them are watched.
+        let again: Vec<usize> = (0..count).filter(|place| place % 4 != 2).collect();
+        columns.watch(&again, 0);
+        check(&columns, &again);
+    }
 }
