@@ -524,48 +524,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn events_that_are_forgotten_can_be_others() {
-        let mut schur = two_by_two();
-        let mut touched = WindowFactor::default();
-        touched.reset(2, 2);
-        assert!(touched.is_empty() && !touched.has_touched(1));
-        touched.push(&mut schur, 1, 1.0).unwrap();
-        touched.push(&mut schur, 0, 1.0).unwrap();
-        assert!(touched.has_touched(0) && touched.has_touched(1));
-        touched.truncate(1);
-        assert_eq!(touched.positions(), [1]);
-        assert!(!touched.has_touched(0));
-        assert_eq!([touched.factor(1, 0), touched.factor(0, 1)], [5.0_f64.sqrt(), 0.0]);
-        touched.push(&mut schur, 0, 1.0).unwrap();
-        // 4 − 2²/5.
-        assert!((touched.factor(0, 1) - 3.2_f64.sqrt()).abs() < 1e-15);
-        touched.reset(3, 3);
-        assert_eq!((touched.watched(), touched.len()), (3, 0));
-    }
-
-    /// What is left of a pivot is 1 − 1, 1/2 − 1, or no number at all. Then the node has not touched.
-    #[test]
-    fn pivots_are_positive() {
-        for (own, pivot) in [(1.0, 0.0), (0.5, -0.5), (f64::NAN, f64::NAN)] {
-            let mut schur = two_by_two();
-            schur.as_mut_slice()[3] = own;
-            let mut touched = WindowFactor::default();
-            touched.reset(2, 2);
-            touched.push(&mut schur, 0, 1.0).unwrap();
-            let refused = touched.push(&mut schur, 1, 1.0).unwrap_err();
-            assert!(refused == pivot || refused.is_nan() && pivot.is_nan(), "{refused}");
-            assert_eq!((touched.len(), touched.factor(1, 1)), (1, 0.0));
-        }
-    }
-
-    /// Two matrices of 7 × 7 numbers.
-    #[test]
-    fn bytes_are_those_of_matrix_and_factor() {
-        assert_eq!(
-            [WindowFactor::bytes(0), WindowFactor::bytes(7), WindowFactor::bytes(usize::MAX)],
-            [0, 784, usize::MAX]
-        );
-    }
 }

@@ -200,13 +200,23 @@ impl Estimated {
 
     /// Takes all scalars from the solution at the present approach, and ranks the nodes.
     fn survey(&mut self, run: &mut LoadingRun, tolerances: &WindowTolerances) -> Result<(), Error> {
+        self.survey_late(run, tolerances, 0.0)
+    }
+
+    /// The same where the approach has gone on by so much without events: gaps that closed on that way are overlaps.
+    fn survey_late(
+        &mut self,
+        run: &mut LoadingRun,
+        tolerances: &WindowTolerances,
+        late: f64,
+    ) -> Result<(), Error> {
         if run.plastic.is_none() {
             return self.survey_within(run, Slack::ANY);
         }
         let approach = run.scalars.approach();
         let [_, slack] = slacks(run, (&run.problem, &run.contact), tolerances, approach);
         self.left = slack.excess;
-        self.survey_within(run, slack)
+        self.survey_within(run, Slack { gap: slack.gap + late, ..slack })
     }
 
     /// The same, where the solution may contradict by so much what contact that grows does.

@@ -103,7 +103,7 @@ impl Estimated {
             run.scalars.place_at(approach + late);
             let before = self.rates;
             if is_last {
-                self.survey(run, tolerances)?;
+                self.survey_late(run, tolerances, late)?;
             } else {
                 // Not all that happens there has happened.
                 self.survey_within(run, Slack::ANY)?;
