@@ -30,8 +30,8 @@
 //!   none closes on unloading, also within jumps; where a jump ends does not depend on which node goes first; and a
 //!   closed loop within the path restores its state. On kernels of
 //!   [`ContactGrowth::Monotone`](crate::ContactGrowth::Monotone), `Spectral`, states are minima and energies balance
-//!   all the same, but the order of events within a jump is that of this program. Kernels of unknown growth are
-//!   refused.
+//!   all the same, but the order of events within a jump is that of this program, and nodes of one height that take
+//!   turns without end are [`Error::Cycling`](crate::Error::Cycling). Kernels of unknown growth are refused.
 //! * *Energies*: `∫ W dδ` is the sum of elastic, adhesive and dissipated energy. What a jump costs has a closed form.
 //! * *Pull-off*: the branch under a dead load is that of the approach where the load is at its greatest so far on
 //!   loading, or its least on unloading. So [`AdhesiveBranch::pull_off`] holds for machines of any compliance. What a
