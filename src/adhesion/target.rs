@@ -24,10 +24,11 @@ pub(super) struct Measured {
     pub(super) mean_gap: [f64; 2],
     /// A stiffness that rates of loads are rounding to \[N/m\].
     pub(super) stiffness: f64,
+    /// Whether all nodes touch: mean planes of a periodic half-space do not approach any more then.
+    pub(super) is_full: bool,
 }
 
-/// Rates below this part of those of a free surface are rounding: in full contact mean planes of a periodic half-space
-/// do not approach.
+/// Rates below this part of those of a free surface are rounding.
 const LEAST_RATE: f64 = 1e-11;
 
 impl Targets {
@@ -94,8 +95,10 @@ impl Targets {
     /// When the first is reached that is not an area; infinity if none is as long as nothing happens.
     pub(super) fn time(&self, gauge: Gauge, measured: &Measured, direction: Direction) -> f64 {
         let sign = direction.sign();
-        let Measured { approach, load: [load, load_rate], mean_gap: [gap, gap_rate], stiffness } =
+        let Measured { approach, load: [load, load_rate], mean_gap: [gap, gap_rate], .. } =
             *measured;
+        let Measured { stiffness, is_full, .. } = *measured;
+        let stands = is_full && gauge.displacement(1.0) > 0.0;
         let times = self.targets.iter().map(|target| {
             let (left, rate, unit) = match *target {
                 // Whether it rises or falls.
@@ -104,10 +107,12 @@ impl Targets {
                 }
                 ContactTarget::Approach(to) => (
                     sign * (to - gauge.reported_approach(approach, load)),
-                    1.0 - sign * gauge.displacement(load_rate),
+                    if stands { 0.0 } else { 1.0 - sign * gauge.displacement(load_rate) },
                     1.0,
                 ),
-                ContactTarget::MeanGap(to) => (sign * (gap - to), -sign * gap_rate, 1.0),
+                ContactTarget::MeanGap(to) => {
+                    (sign * (gap - to), if is_full { 0.0 } else { -sign * gap_rate }, 1.0)
+                }
                 ContactTarget::AreaFraction(_) | ContactTarget::MeanPressure(_) => {
                     return f64::INFINITY;
                 }

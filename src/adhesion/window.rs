@@ -444,6 +444,7 @@ impl<'a> Play<'a> {
             load: [pressures, pressure_rate].map(|sum| self.area() * sum),
             mean_gap: [gaps, gap_rate].map(|sum| sum / self.grid.nodes() as f64),
             stiffness: self.area() * self.board.law().slope(),
+            is_full: self.board.contact_nodes == self.grid.nodes(),
         };
         let limit = self.view.targets.time(self.view.gauge, &measured, self.view.direction);
         let first = until.min(limit);

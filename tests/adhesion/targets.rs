@@ -5,11 +5,12 @@ use asperity::adhesion::{
 };
 use asperity::loading::History;
 use asperity::record::AdhesiveRecord;
-use asperity::surface::{Amplitude, SelfAffine};
+use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::{
     AdhesionError, Boundary, Boussinesq, ContactGrowth, ContactState, ContactTarget, Error, Grid,
-    InfluenceKernel, KernelTable, LoadingSolver, LoadingState, PeriodicBoussinesq,
+    InfluenceKernel, KernelTable, LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral,
 };
+use nalgebra::DMatrix;
 
 fn kernel() -> Boussinesq {
     Boussinesq::new(Grid::square(20, 1.0).unwrap(), 1.0).unwrap()
@@ -71,6 +72,30 @@ fn branches_end_at_their_targets() {
             assert_eq!((state.event, state.node), (expected.event, expected.node));
             assert!((state.contact.load - expected.contact.load).abs() < 1e-10 * most);
         }
+    }
+}
+
+/// In full contact the mean planes of a periodic half-space do not approach any more: a target beyond that is none, and
+/// the load stays what it was.
+#[test]
+fn no_approach_is_beyond_full_contact() {
+    let grid = Grid::new(4, 2, 0.07984, 0.09574).unwrap();
+    let kernels: [&dyn InfluenceKernel; 2] =
+        [&PeriodicBoussinesq::new(grid, 1.0).unwrap(), &Spectral::new(grid, 1.0).unwrap()];
+    // In pairs that are nearly of one height.
+    let heights = [2.5755e-10, 2.3408e-10, 1.9532e-10, 1.7231e-10];
+    let heights = DMatrix::from_fn(4, 2, |ix, iy| heights[ix] - 1e-13 * iy as f64);
+    let deepest = heights.max() - heights.min();
+    let surface = HeightMap::new(heights).unwrap();
+    for kernel in kernels {
+        let law = Adhesion::work(1e-10);
+        let mut path = AdhesivePath::builder(&surface, kernel, law).build().unwrap();
+        path.load_to(ContactTarget::AreaFraction(1.0)).unwrap();
+        let full = *run(&mut path).last().unwrap();
+        assert_eq!(full.contact.contact_area_fraction, 1.0);
+        path.load_to(ContactTarget::Approach(2.0 * deepest)).unwrap();
+        assert_eq!(run(&mut path), []);
+        assert_eq!((path.end(), path.state()), (Some(AdhesiveEnd::NoMoreEvents), Some(full)));
     }
 }
 
