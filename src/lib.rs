@@ -72,7 +72,7 @@
 //! # What a path costs
 //!
 //! A Cholesky factor of n nodes in contact takes 4n² bytes and n³/3 floating-point operations at the speed of a matrix
-//! product; nodes out of contact cost little. When the rest of the path is cheaper with iterations, from some 6400
+//! product; nodes out of contact cost little. When the rest of the path is cheaper with iterations, from some 6800
 //! nodes in contact on a grid of 256 × 256, the path continues without a factor. Memory is then proportional to the
 //! grid, and states between two exact solutions carry an estimate of their error ([`loading`]). Results are bit for bit
 //! the same with any number of threads, and without the feature `rayon`.
@@ -122,6 +122,7 @@ pub mod slip;
 pub mod stress;
 #[cfg(test)]
 mod test_chain;
+mod tied_events;
 pub mod updater;
 mod warning;
 

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::answers::Answers;
 use super::law::CohesiveLaw;
-use super::soft::{Half, Soft};
+use super::rows::{Rows, Sources};
+use super::soft::Soft;
 use super::state::NodeState;
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
@@ -104,14 +105,8 @@ struct Joined {
     columns: Vec<f64>,
 }
 
-/// What the rows of a window do to soft nodes.
-pub(super) struct Rows {
-    /// The columns of the soft nodes, by row.
-    half: Half,
-    /// 1, or −1 where what is given of a row lowers the pressures of soft nodes as its column in `half` raises them.
-    signs: Vec<f64>,
-}
-
+/// One node stays watched without need for so many that are needed: all columns are moved to leave it out.
+const NEEDED_FOR_ONE: usize = 4;
 /// What a solution leaves in gaps that are known, relative to the range and the greatest length.
 const RESIDUAL: f64 = 1e-8;
 
@@ -259,12 +254,16 @@ impl Body {
         Ok(())
     }
 
-    /// Watches some nodes; those that were watched before come first.
+    /// Watches some nodes; those that were watched before come first, and stay if few of them are needed no more.
     fn watch(&mut self, nodes: &[usize]) -> Result<(), Error> {
         let mut is_new = vec![false; self.problem.initial_gap().len()];
         nodes.iter().for_each(|&node| is_new[node] = true);
         let before = self.watched.nodes.iter().enumerate();
-        let kept: Vec<usize> = before.filter(|(_, node)| is_new[**node]).map(|(k, _)| k).collect();
+        let is_needed: Vec<usize> =
+            before.filter(|(_, node)| is_new[**node]).map(|(k, _)| k).collect();
+        let all = self.watched.nodes.len();
+        let stay = all - is_needed.len() <= nodes.len() / NEEDED_FOR_ONE;
+        let kept = if stay { (0..all).collect() } else { is_needed };
         let mut watched: Vec<usize> = kept.iter().map(|&place| self.watched.nodes[place]).collect();
         watched.iter().for_each(|&node| is_new[node] = false);
         for &node in nodes {
@@ -317,14 +316,15 @@ impl Body {
         Ok(self.soft_factor.insert(factor))
     }
 
-    /// What some nodes answer to each other and what sums of pressures and of gaps do, with all soft nodes on their
-    /// slope.
+    /// What some nodes, in ascending order, answer to each other and what sums of pressures and of gaps do, with all
+    /// soft nodes on their slope. `known` are rows of this front that nothing has followed since.
     pub(super) fn rows(
         &mut self,
         front: &Front,
-        nodes: &[usize],
+        nodes: Vec<usize>,
+        known: Option<Rows>,
     ) -> Result<(Answers, Rows), Error> {
-        let all: Vec<usize> = self.soft.iter().chain(nodes).copied().collect();
+        let all: Vec<usize> = self.soft.iter().chain(&nodes).copied().collect();
         self.watch(&all)?;
         let sums = match self.sums.take() {
             Some(sums) => sums,
@@ -340,18 +340,21 @@ impl Body {
         let states: Vec<NodeState> = nodes.iter().map(|&node| front.nodes[node]).collect();
         let (size, width) = (nodes.len(), nodes.len() + 2);
         let schur = &self.watched.schur;
-        let mut columns = vec![0.0; soft.len() * width];
-        let of_soft = soft.places().iter().zip(&self.soft);
-        for ((&place, &node), values) in of_soft.zip(columns.chunks_exact_mut(width)) {
-            for ((value, state), &row) in values.iter_mut().zip(&states).zip(&of_rows) {
-                *value = match state {
-                    NodeState::Soft => f64::from(u8::from(row == place)),
-                    _ => schur.entry(place, row),
-                };
-            }
-            (values[size], values[size + 1]) = (sums[0][node], sums[1][node]);
+        // Where each column comes from: what is known of a node, or one that is solved for.
+        let sources = Sources::of(&nodes, known.as_ref());
+        let mut columns = Vec::with_capacity(soft.len() * sources.new.len());
+        for (&place, &node) in soft.places().iter().zip(&self.soft) {
+            columns.extend(sources.new.iter().map(|&row| match states.get(row) {
+                Some(NodeState::Soft) => f64::from(u8::from(of_rows[row] == place)),
+                Some(_) => schur.entry(place, of_rows[row]),
+                None => sums[row - size][node],
+            }));
         }
-        let half = soft.half(columns, width);
+        let solved = soft.half(columns, sources.new.len());
+        let half = match known {
+            Some(known) => known.half.joined(&solved, &sources.columns),
+            None => solved,
+        };
         let gram = half.gram().ok_or(Error::FactorizationFailed { nodes: width })?;
         let mut matrix = vec![0.0; width * size];
         for (j, column) in matrix.chunks_exact_mut(width).enumerate() {
@@ -373,7 +376,7 @@ impl Body {
             |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
         let signs = states.iter().map(|state| if with_pressure(state) { -1.0 } else { 1.0 });
         let answers = Answers::new(matrix, states.iter().map(with_pressure).collect());
-        Ok((answers, Rows { half, signs: signs.collect() }))
+        Ok((answers, Rows { nodes, half, signs: signs.collect() }))
     }
 
     /// Sums of the squares of the pressures of soft nodes that are no rows, for each of some lists of what is given of

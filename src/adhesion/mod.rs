@@ -65,6 +65,7 @@ mod law;
 mod moment;
 mod path;
 mod plain;
+mod rows;
 mod soft;
 mod state;
 mod target;

@@ -18,14 +18,13 @@ use super::trace::Trace;
 use super::window::{self, Played};
 use crate::contact::{ContactState, ContactTarget};
 use crate::kernel::Gauge;
+use crate::tied_events::TiedEvents;
 use crate::{Error, Grid, Problem};
 
 /// Nodes that are watched: so many, or one for so many soft ones. On 128 × 128 nodes with up to 628 soft ones 128 and
 /// 300 are as fast, and 600 take 1.4 times as long.
 const WATCHED: usize = 64;
 const SOFT_FOR_ONE: usize = 4;
-/// So many events for each node at one approach are too many: a node passes through five states at most.
-const TIED_EVENTS: usize = 20;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to
 /// 1e-12 whatever the windows were, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
@@ -62,8 +61,7 @@ pub struct AdhesivePath {
     totals: Totals,
     /// Within a jump the node that was unstable.
     jump: Option<usize>,
-    /// Events so far at the approach of the front, by windows.
-    tied: usize,
+    tied: TiedEvents,
     queue: VecDeque<AdhesiveState>,
     last: Option<AdhesiveState>,
     end: Option<AdhesiveEnd>,
@@ -118,7 +116,7 @@ impl AdhesivePath {
             plain,
             totals: Totals::default(),
             jump: None,
-            tied: 0,
+            tied: TiedEvents::default(),
             queue: VecDeque::new(),
             last: None,
             end: None,
@@ -191,7 +189,7 @@ impl AdhesivePath {
         self.direction = direction;
         self.targets = targets;
         self.field = None;
-        self.tied = 0;
+        self.tied = TiedEvents::default();
         self.end = None;
         Ok(())
     }
@@ -454,15 +452,6 @@ impl AdhesivePath {
         Ok(self.last)
     }
 
-    /// Refuses to go on without end at one approach: where a pull may open a gap, nodes of one height may take turns.
-    fn count_tie(&mut self, approach: f64, events: usize) -> Result<(), Error> {
-        self.tied = if approach == self.front.approach { self.tied + events.max(1) } else { 0 };
-        if self.tied > TIED_EVENTS * (self.grid().nodes() + 1) {
-            return Err(Error::Cycling { approach, events: self.tied });
-        }
-        Ok(())
-    }
-
     /// Follows the events of one window.
     fn window(&mut self) -> Result<(), Error> {
         let sign = self.direction.sign();
@@ -498,7 +487,9 @@ impl AdhesivePath {
         self.timings.shortened += played.shortened;
         self.timings.taken_back += played.taken_back;
         self.timings.events += changes.len();
-        self.count_tie(front.approach, changes.len())?;
+        let has_moved = front.approach != self.front.approach;
+        let place = (front.approach, self.grid().nodes());
+        self.tied.add(changes.len().max(1), has_moved, place)?;
         let before = self.trace.changes.len();
         self.trace.changes.extend(changes);
         for (event, node, moment, changes) in &moments {

@@ -95,9 +95,8 @@ impl Targets {
     /// When the first is reached that is not an area; infinity if none is as long as nothing happens.
     pub(super) fn time(&self, gauge: Gauge, measured: &Measured, direction: Direction) -> f64 {
         let sign = direction.sign();
-        let Measured { approach, load: [load, load_rate], mean_gap: [gap, gap_rate], .. } =
-            *measured;
-        let Measured { stiffness, is_full, .. } = *measured;
+        let Measured { approach, load, mean_gap, stiffness, is_full } = *measured;
+        let ([load, load_rate], [gap, gap_rate]) = (load, mean_gap);
         let stands = is_full && gauge.displacement(1.0) > 0.0;
         let times = self.targets.iter().map(|target| {
             let (left, rate, unit) = match *target {

@@ -1,9 +1,10 @@
 //! The events of a window: along one parameter, among the nodes that are watched.
 
 use super::board::{Beginning, Board, Change, LAG, Left, Row};
-use super::front::{Body, Field, Front, Parameter, Rows};
+use super::front::{Body, Field, Front, Parameter};
 use super::law::CohesiveLaw;
 use super::moment::{Moment, Totals};
+use super::rows::Rows;
 use super::state::{AdhesiveEvent, Direction, NodeState};
 use super::target::{Measured, Targets};
 use crate::contact::ContactState;
@@ -59,25 +60,29 @@ pub(super) fn follow(
 ) -> Result<Option<Played>, Error> {
     let mut also = Vec::new();
     let (mut most, mut watched) = (usize::MAX, size);
+    let mut known = None;
     for taken_back in 0..TRIES {
-        let mut play = Play::open(body, front, field, view, (watched, &also))?;
+        let nodes = (watched, also.as_slice());
+        let mut play = Play::open(body, front, field, view, (nodes, known.take()))?;
         let may_grow = also.len() < size && taken_back < REOPENED;
         let ended = match play.play_out(body, front, field, (most.min(size), may_grow))? {
             Outcome::Nothing => return Ok(None),
             Outcome::Led(ended) => ended,
             Outcome::Lacks(nodes) => {
                 also.extend(nodes);
+                known = Some(play.rows);
                 continue;
             }
             Outcome::LacksSoft => {
                 watched = usize::MAX;
+                known = Some(play.rows);
                 continue;
             }
         };
         play.add_energies(body, field);
         body.follow(&ended)?;
         let found = body.survey(&ended, view.direction.sign());
-        let is_least = play.events <= 1 || most.min(size) <= 1;
+        let is_least = play.is_least(most.min(size));
         let wrong = match &found {
             Ok(field) => beyond(body, &ended, field),
             Err(Error::FactorizationFailed { .. }) if !is_least => vec![(usize::MAX, 1.0)],
@@ -193,7 +198,7 @@ impl<'a> Play<'a> {
         front: &Front,
         field: &Field,
         view: &'a View<'a>,
-        (size, also): (usize, &[usize]),
+        ((size, also), known): ((usize, &[usize]), Option<Rows>),
     ) -> Result<Self, Error> {
         let line =
             |node: usize| [&field.pressure, &field.gap].map(|pair| [pair[0][node], pair[1][node]]);
@@ -224,7 +229,6 @@ impl<'a> Play<'a> {
         }
         nodes.extend(others.iter().map(|&(_, node)| node));
         nodes.sort_unstable();
-        let (answers, rows) = body.rows(front, &nodes)?;
         let begun: Vec<Row> = nodes
             .iter()
             .map(|&node| {
@@ -239,6 +243,8 @@ impl<'a> Play<'a> {
                 _ => dgap,
             }
         });
+        let rates = rates.collect();
+        let (answers, rows) = body.rows(front, nodes, known)?;
         let parameter = front.parameter();
         let soft = begun.iter().filter(|row| row.state == NodeState::Soft).count();
         let board = Board::new(Beginning {
@@ -246,7 +252,7 @@ impl<'a> Play<'a> {
             sign: view.direction.sign(),
             rows: begun.clone(),
             answers,
-            rates: rates.collect(),
+            rates,
             sums: field.sums(),
             held: front.held.clone(),
             is_carried: parameter != Parameter::Approach,
@@ -348,9 +354,7 @@ impl<'a> Play<'a> {
             if may_grow && !lacks.is_empty() {
                 return Ok(Outcome::Lacks(lacks));
             }
-            // There are no fewer: behind its last event a node that is carried may be found to be on its law, which
-            // counts as one more.
-            if self.events == 1 || most == 1 {
+            if self.is_least(most) {
                 return Ok(Outcome::Led(ended));
             }
             // Gaps fall faster and faster on loading: a line comes too early.
@@ -366,6 +370,12 @@ impl<'a> Play<'a> {
             until = until.min(first);
             self.restart(&begun, front);
         }
+    }
+
+    /// Whether there are no fewer events, where so many at most were asked for: behind the last one a node that is
+    /// carried may be found to be on its law, which counts as one more.
+    fn is_least(&self, most: usize) -> bool {
+        self.events <= 1 || most <= 1
     }
 
     /// Back to where it has begun.

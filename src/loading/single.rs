@@ -1,7 +1,5 @@
 //! One event at a time, where a node may leave at any moment: touches and releases, each from a solution of its own.
 
-use super::tuning::{ESTIMATED, LEAST_RATE, TIED_EVENTS, TOLERANCE};
-
 use super::estimated::Estimated;
 use super::estimated::leaving::Attempt;
 use super::exact::Exact;
@@ -10,9 +8,11 @@ use super::ranking::{Ranking, fill};
 use super::run::LoadingRun;
 use super::state::ContactEvent;
 use super::tolerances::{WindowTolerances, ties_until};
+use super::tuning::{ESTIMATED, LEAST_RATE, TOLERANCE};
 use super::window::Window;
 use crate::Error;
 use crate::clock::Stopwatch;
+use crate::tied_events::TiedEvents;
 use crate::updater::{Left, Solution};
 
 /// The next event, unless another one comes first.
@@ -34,8 +34,7 @@ pub(super) struct Single {
     window: Window,
     /// Nodes out of contact by the approach at which they touch.
     touches: Ranking,
-    /// Events so far at the approach of the front.
-    tied: usize,
+    tied: TiedEvents,
     /// Whether the next event has been looked for.
     has_begun: bool,
     /// The error of the state that the path goes on from, if that is an estimate and no solution has been without
@@ -95,6 +94,7 @@ impl Single {
         if !next.approach.is_finite() {
             return Err(run.not_finite());
         }
+        let nodes = run.problem.grid().nodes();
         // What is inherited may be tension that no release explains.
         if let Phase::Factor { updater, log, .. } = phase
             && next.event == ContactEvent::Touch
@@ -104,13 +104,12 @@ impl Single {
             let solver = (&mut **updater, log);
             if exact.produce_before_release(run, solver, most_nodes)? {
                 self.has_begun = false;
-                if run.scalars.approach() > front {
-                    self.tied = 0;
-                }
-                return Ok(());
+                let approach = run.scalars.approach();
+                return self.tied.add(0, approach > front, (approach, nodes));
             }
         }
-        self.count_tie(run, next.approach)?;
+        let has_moved = next.approach > run.scalars.approach();
+        self.tied.add(1, has_moved, (next.approach, nodes))?;
         let step = run.steps() + 1;
         if next.event == ContactEvent::Touch {
             let time = next.approach - run.scalars.approach();
@@ -133,18 +132,6 @@ impl Single {
             run.take_back_release()?;
         }
         checked
-    }
-
-    /// Refuses to go on without end at one approach.
-    fn count_tie(&mut self, run: &LoadingRun, approach: f64) -> Result<(), Error> {
-        if approach > run.scalars.approach() {
-            self.tied = 0;
-        }
-        self.tied += 1;
-        if self.tied > TIED_EVENTS * (run.problem.grid().nodes() + 1) {
-            return Err(Error::Cycling { approach, events: self.tied });
-        }
-        Ok(())
     }
 
     /// Takes a node out of the contact.
@@ -229,28 +216,6 @@ mod tests {
     use super::*;
     use crate::ContactGrowth;
     use crate::loading::test_chain;
-
-    /// Twenty events for each of five nodes and one more, all at one approach.
-    #[test]
-    fn events_at_one_approach_come_to_an_end() -> Result<(), Error> {
-        let mut run = test_chain::run(&[0.0; 5])?;
-        run.scalars.place_at(1.0);
-        let mut single = Single::default();
-        for _ in 0..120 {
-            single.count_tie(&run, 1.0)?;
-        }
-        // One further on, and all begins anew.
-        single.count_tie(&run, 1.5)?;
-        for _ in 0..119 {
-            single.count_tie(&run, 1.0)?;
-        }
-        let refused = single.count_tie(&run, 1.0);
-        assert!(
-            matches!(refused, Err(Error::Cycling { approach: 1.0, events: 121 })),
-            "{refused:?}"
-        );
-        Ok(())
-    }
 
     /// What comes first at the approach 2 of nodes that touch at some approaches and of two nodes in contact, 3 and 5,
     /// with pressures and rates; the error of a touch as a gap.

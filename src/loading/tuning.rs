@@ -195,10 +195,6 @@ pub(super) const ESTIMATED: f64 = 1e-4;
 
 // Events one at a time
 
-/// Events at a single approach, for each node of the grid, after which no end of them is expected.
-/// Nodes that touch and leave together are sorted out by the least index among them, which comes to
-/// an end (Murty, Opsearch 11 (1974) 123–130), in practice after one or two events a node.
-pub(super) const TIED_EVENTS: usize = 20;
 /// Rates below this, relative to the greatest, are nothing but rounding where either sign is possible:
 /// otherwise nodes that neither gain nor lose pressure could touch and leave without end.
 pub(super) const LEAST_RATE: f64 = 1e-12;
@@ -248,12 +244,12 @@ pub(super) const RELEASE_WITH_FACTOR: [f64; 2] = [2.0e-9, 1.0e-7];
 /// solution of its own.
 pub(super) const RELEASE_BY_ITERATIONS: f64 = 2.0e-6;
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what goes with
-/// them on the contact. An event takes 1.1 ms on 512² with 47 % in contact, and 2.3 ms with 95 %. With a factor the
-/// path needs the most memory where it is given up: 3.3 times as great the first number, and 1.5 times the second, made
-/// a path to 6 % of 512² 0.95 times as long and its peak 704 MB instead of 372.
-pub(super) const ITERATIONS: [f64; 2] = [1.2e-9, 4.0e-9];
+/// them on the contact. Where an event took 1.5 times [`FACTOR`] n² with a factor, it took 0.43, 0.73 and 1.67 ms
+/// without on 128², 256² and 512², on paths to 100, 30 and 5 %. A third of the first number: the path to 5 % of 512²
+/// takes 1.2 to 1.3 times as long. With a factor the path needs the most memory where it is given up.
+pub(super) const ITERATIONS: [f64; 2] = [3.5e-9, 4.0e-9];
 /// The same for any grid: local solutions and events.
-pub(super) const WINDOW: f64 = 3.0e-4;
+pub(super) const WINDOW: f64 = 2.0e-4;
 /// Seconds that giving a factor up takes, per node of the grid and per node in contact: the first solutions without it,
 /// which begin with nothing. Paths that end right behind it took 0.12, 0.10 and 0.40 s more on 128², 256² and 512² with
 /// 5900, 6400 and 8000 nodes.

@@ -11,9 +11,9 @@ use crate::{Error, Problem};
 /// iterations from then on. No path ends for want of memory for n² numbers, unless the budget is less than iterations
 /// take on the grid alone; and full contact on 512 × 512 nodes takes minutes.
 ///
-/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 1.2 ns for each node of the
-/// grid and 4 ns for each one in contact: both cost the same at some 5900 contact nodes on a grid of 128², 6400 on
-/// 256², 8000 on 512², and 12 700 on 1024². There the factor is given up if all that is left of the path, the first
+/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.2 ms, 3.5 ns for each node of the
+/// grid and 4 ns for each one in contact: both cost the same at some 5300 contact nodes on a grid of 128², 6800 on
+/// 256², 10 800 on 512², and 19 900 on 1024². There the factor is given up if all that is left of the path, the first
 /// solution without a factor included, takes four fifths of the time or less. A path that ends soon behind that number
 /// of nodes keeps its factor: a tenth of 256² is exact to rounding. The end is the target; a load, an approach or a
 /// mean gap is taken for about the number of nodes that load and stiffness of the present state give. These are

@@ -21,7 +21,7 @@ use crate::updater::tuning::{CACHED_ROWS, LANES, ROWS, UNIT, WIDTH};
 /// The forward-substituted columns `F = L⁻¹C_IP` of the watched nodes P, which grow with the
 /// factor L.
 ///
-/// The columns come in blocks, of which the first holds those that were watched before. A block is
+/// The columns come in blocks, of which the first ones hold those that were watched before. A block is
 /// stored row by row: then products with L run at full speed without repacking L.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Columns {
@@ -81,6 +81,10 @@ impl Columns {
     /// for `new` more.
     pub(super) fn watch(&mut self, kept: &[usize], new: usize) {
         let rows = self.rows;
+        let all: usize = self.blocks.iter().map(|block| block.width).sum();
+        if kept.len() == all && all > 0 {
+            return self.add(new);
+        }
         let old = self.blocks.first().map_or(0, |block| block.width);
         if kept.last().is_some_and(|&last| last >= old) {
             // Some were new the last time, and nothing has touched since.
