@@ -1,5 +1,6 @@
-//! The column of ensembles of `docs/features_together.md`: a path of `--seeds` is the one of its seed alone, in every
-//! byte.
+//! Columns of `docs/features_together.md` that are the program's. Ensembles: a path of `--seeds` is the one of its seed
+//! alone, in every byte. Reports: the page of a record has the events and scalars of the table of its path.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 
@@ -7,8 +8,13 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
+use asperity::record::LoadingRecord;
+use asperity::{Boundary, Boussinesq, Grid, LoadingSolver, SelfAffine};
+use asperity_report::PathTable;
 use asperity_testing::page::tables;
+use asperity_testing::report;
 use common::{Scratch, output, said};
+use nalgebra::DMatrix;
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -36,6 +42,9 @@ const ROWS: [(&str, &str, &[&str]); 16] = [
     ("resumed", "--periodic spectral", &["pressure.npy"]),
     (ADHESION, "--work-of-adhesion 1000", &["pressure.npy", "gap.npy"]),
 ];
+
+/// The elastic path of what a yielded one in the folder `o` leaves.
+const RESIDUAL: &str = "path --surface o/residual_surface.npy --side 1e-2 --material steel";
 
 /// What the program says if it refuses, `None` if it does what is asked.
 fn refused(folder: &Path, line: &str) -> Result<Option<String>, Box<dyn Error>> {
@@ -95,6 +104,98 @@ fn ensembles_are_their_paths() -> Done {
     Ok(())
 }
 
+/// Asserts that the page of a path has the events and scalars of its table.
+fn assert_reports(html: &str, csv: &str, row: &str) {
+    let data = report::data(html);
+    let events = &data["records"][0]["events"];
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    let states: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let cells = |name: &str| {
+        let place = header.iter().position(|other| *other == name).unwrap();
+        states.iter().map(move |cells| cells[place])
+    };
+    let whole = |name| cells(name).map(|cell| cell.parse::<u32>().unwrap());
+    let width = data["records"][0]["nx"].as_u64().unwrap() as u32;
+    let nodes = whole("ix").zip(whole("iy")).map(|(ix, iy)| ix + width * iy);
+    assert_eq!(report::numbers(&events["nodes"]), nodes.collect::<Vec<_>>(), "{row}");
+    let kinds = report::numbers(&events["kinds"]);
+    let kinds = kinds.iter().map(|kind| ["touch", "release", "limit", "yield"][*kind as usize]);
+    assert!(kinds.eq(cells("event")), "{row}");
+    for name in ["load", "approach", "mean_gap", "contact_stiffness", "interfacial_stiffness"] {
+        if events["columns"][name].is_null() {
+            assert!(cells(name).all(str::is_empty), "{row}: {name}");
+            continue;
+        }
+        let found = report::column(events, name);
+        assert_eq!(found.len(), states.len(), "{row}: {name}");
+        for (found, cell) in found.into_iter().zip(cells(name)) {
+            let expected = cell.parse().unwrap_or(f64::NAN);
+            // Numbers are kept in steps of 2e-5 of their logarithm.
+            let is_near = found == expected || (found / expected - 1.0).abs() <= 1.001e-5;
+            assert!(is_near || found.is_nan() && cell.is_empty(), "{row}: {name} {found} {cell}");
+        }
+    }
+}
+
+/// A path with a hardness of each node, some of which never yield: its record, and the table of its states.
+fn with_a_map_of_hardness(record: &Path) -> Result<String, Box<dyn Error>> {
+    let grid = Grid::square(16, 1e-2 / 16.0)?;
+    let kernel = Boussinesq::new(grid, 230e9)?;
+    let map = DMatrix::from_fn(16, 16, |ix, iy| match (ix + iy) % 3 {
+        0 => f64::INFINITY,
+        _ => 3e9,
+    });
+    let surface = SelfAffine::zhang2020(1);
+    let builder = LoadingSolver::builder(&surface, &kernel).hardness_map(&map);
+    let mut path = builder.max_area_fraction(0.3).build()?;
+    let history = path.run()?;
+    let mut table = PathTable::new(grid, Boundary::Free);
+    let lines = history.states().iter().map(|state| table.line(state));
+    let lines: Vec<String> = lines.collect::<Result<_, _>>()?;
+    LoadingRecord::new(&path, history)?.write_npz(record, &[])?;
+    Ok(format!("{}\n{}\n", PathTable::HEADER, lines.join("\n")))
+}
+
+#[test]
+fn reports_are_their_paths() -> Done {
+    let table = tables(&page()?, "path");
+    let (header, lines) = table.split_first().ok_or("no table")?;
+    let place = header.iter().position(|column| column == "report").ok_or("no column")?;
+    for ((name, options, _), line) in ROWS.iter().zip(lines) {
+        let folder = Scratch::new(&format!("together-report-{}", name.replace(' ', "-")))?;
+        let path = command(options);
+        let csv = match *name {
+            "hardness per node" => with_a_map_of_hardness(&folder.join("r.npz"))?,
+            "resumed" => {
+                let first = path.replace("0.3", "0.1");
+                assert!(is_followed(&folder.0, &format!("{first} --record r.npz --out first"))?);
+                let on = "path --resume r.npz --max-area-fraction 0.3 --record r.npz --out o -q";
+                assert!(is_followed(&folder.0, on)?);
+                fs::read_to_string(folder.join("o/path.csv"))?
+            }
+            "after unloading" => {
+                assert!(is_followed(&folder.0, &format!("{path} --out o"))?);
+                let on = format!("{RESIDUAL} --max-area-fraction 0.25 -q --record r.npz");
+                assert!(is_followed(&folder.0, &on)?);
+                fs::read_to_string(folder.join("out/path.csv"))?
+            }
+            _ => {
+                assert!(is_followed(&folder.0, &format!("{path} --record r.npz --out o"))?);
+                fs::read_to_string(folder.join("o/path.csv"))?
+            }
+        };
+        let refused = refused(&folder.0, "report r.npz --out page.html")?;
+        let reason = REASONS.iter().find(|(letter, _)| *letter == line[place]);
+        assert_eq!(refused.is_some(), reason.is_some(), "{name}: {refused:?}");
+        match (refused, reason) {
+            (Some(said), Some((_, words))) => assert!(said.contains(words), "{name}: {said}"),
+            _ => assert_reports(&fs::read_to_string(folder.join("page.html"))?, &csv, name),
+        }
+    }
+    Ok(())
+}
+
 /// Columns of the page in the program, on a record or with the options of the path.
 const COMMANDS: [(&str, &str); 6] = [
     ("leak", "leak r.npz --viscosity 1e-3 --pressure-drop 1e5 --along y --states 4"),
@@ -121,8 +222,7 @@ fn the_program_refuses_what_the_page_says() -> Done {
         let path = command(options);
         assert!(is_followed(&folder.0, &format!("{path} --record r.npz --out o"))?, "{name}");
         if *name == "after unloading" {
-            let of = "--surface o/residual_surface.npy --side 1e-2 --material steel";
-            let again = format!("path {of} --max-area-fraction 0.25 -q --record r.npz");
+            let again = format!("{RESIDUAL} --max-area-fraction 0.25 -q --record r.npz");
             assert!(is_followed(&folder.0, &again)?, "{name}");
         }
         let csv = fs::read_to_string(folder.join("out/path.csv"))
@@ -131,11 +231,7 @@ fn the_program_refuses_what_the_page_says() -> Done {
         let load = 0.1 * last.ok_or("no load")?.parse::<f64>()?;
         for (column, command) in COMMANDS {
             let place = header.iter().position(|other| other == column).ok_or("no column")?;
-            let path = if *name == "after unloading" {
-                "path --surface o/residual_surface.npy --side 1e-2 --material steel"
-            } else {
-                &path
-            };
+            let path = if *name == "after unloading" { RESIDUAL } else { &path };
             let command = command.replace("PATH", path).replace("LOAD", &load.to_string());
             let found = refused(&folder.0, &format!("{command} --out o2"))?;
             let reason = REASONS.iter().find(|(letter, _)| *letter == line[place]);

@@ -6,6 +6,7 @@ mod common;
 use std::ffi::OsStr;
 use std::fs;
 
+use asperity_testing::report;
 use common::{Scratch, asperity, is_refused, said};
 use serde_json::Value;
 
@@ -22,9 +23,7 @@ fn done(folder: &Scratch, line: &str) -> String {
 
 /// The data of a page.
 fn data(folder: &Scratch, name: &str) -> Value {
-    let page = fs::read_to_string(folder.join(name)).unwrap();
-    let (_, data) = page.split_once(r#"id="data">"#).unwrap();
-    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
+    report::data(&fs::read_to_string(folder.join(name)).unwrap())
 }
 
 /// The path writes its page, with what it wrote itself beside it, and the record the same one.

@@ -8,6 +8,7 @@
 //! | [`dense`] | influence matrices, and dense solutions that share no code with the library |
 //! | [`equilibria`] | all equilibria of a few nodes that stick |
 //! | [`page`] | tables of pages in Markdown |
+//! | [`report`] | what stands in the page of a path |
 //! | [`surfaces`] | heights of rough surfaces |
 //! | `random` | random surfaces for property tests (feature `proptest`) |
 //! | [`table`] | tables of reference data |
@@ -24,6 +25,7 @@ pub mod equilibria;
 pub mod page;
 #[cfg(feature = "proptest")]
 pub mod random;
+pub mod report;
 pub mod surfaces;
 pub mod table;
 

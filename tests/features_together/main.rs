@@ -46,8 +46,9 @@ const COLUMNS: [(&str, Check); 13] = [
 ];
 
 /// Columns of the program and of Python, and where their tests are.
-const ELSEWHERE: [(&str, &str); 3] = [
+const ELSEWHERE: [(&str, &str); 4] = [
     ("ensembles", "cli/tests/features_together.rs"),
+    ("report", "cli/tests/features_together.rs"),
     ("Python", "python/tests/test_features_together.py"),
     ("pickles", "python/tests/test_features_together.py"),
 ];

@@ -45,7 +45,8 @@ async function column(blob, count, what) {
     else if (code === ZERO) values[i] = 0;
     else if (code === INFINITE) values[i] = Infinity;
     else if (code === NOTHING) values[i] = NaN;
-    else values[i] = blob.scale === "linear" ? code * blob.step : Math.exp(code * blob.step);
+    else if (blob.scale === "signed") values[i] = Math.sign(code) * Math.exp(blob.least + (Math.abs(code) - 1) * blob.step);
+    else values[i] = Math.exp(code * blob.step);
   }
   return values;
 }

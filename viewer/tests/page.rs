@@ -15,6 +15,7 @@ use asperity::{
     PeriodicBoussinesq, SelfAffine,
 };
 use asperity_report::{Report, Source};
+use asperity_testing::report;
 use serde_json::Value;
 
 /// The path of a surface to a part of its area, with a hardness or without.
@@ -45,49 +46,6 @@ fn page_of(name: &str, record: &LoadingRecord) -> Result<String, Error> {
     Ok(report.html())
 }
 
-/// The data of a page.
-fn data_of(page: &str) -> Value {
-    let (_, data) = page.split_once(r#"id="data">"#).unwrap();
-    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
-}
-
-fn inflated(text: &Value) -> Vec<u8> {
-    let digits = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let place = |letter: u8| digits.iter().position(|digit| *digit == letter).map(|i| i as u32);
-    let mut bytes = Vec::new();
-    for group in text.as_str().unwrap().as_bytes().chunks(4) {
-        let known: Vec<u32> = group.iter().filter_map(|letter| place(*letter)).collect();
-        let bits = (0..4).fold(0, |bits, i| bits << 6 | known.get(i).copied().unwrap_or(0));
-        bytes.extend((0..known.len() - 1).map(|i| (bits >> (16 - 8 * i)) as u8));
-    }
-    miniz_oxide::inflate::decompress_to_vec_zlib(&bytes).unwrap()
-}
-
-fn numbers(blob: &Value) -> Vec<u32> {
-    let (count, bytes) = (blob["count"].as_u64().unwrap() as usize, inflated(&blob["data"]));
-    let plane =
-        |i: usize| bytes.chunks(count).enumerate().map(move |(k, p)| u32::from(p[i]) << (8 * k));
-    (0..count).map(|i| plane(i).sum()).collect()
-}
-
-fn column(events: &Value, name: &str) -> Vec<f64> {
-    let column = &events["columns"][name];
-    let step = column["step"].as_f64().unwrap();
-    let mut code = 0_i32;
-    let values = numbers(&column["values"]).into_iter().map(|change| {
-        code = code.wrapping_add((change >> 1) as i32 ^ -((change & 1) as i32));
-        match (code, column["scale"].as_str().unwrap()) {
-            (code, "whole") => f64::from(code),
-            (i32::MAX, _) => 0.0,
-            (code, _) if code == i32::MAX - 1 => f64::INFINITY,
-            (code, _) if code == i32::MAX - 2 => f64::NAN,
-            (code, "linear") => f64::from(code) * step,
-            (code, _) => (f64::from(code) * step).exp(),
-        }
-    });
-    values.collect()
-}
-
 /// Logarithms are kept in steps of 2e-5, and half a step is how far a number is off.
 fn assert_near(found: &[f64], expected: impl Iterator<Item = f64>, what: &str) {
     let expected: Vec<f64> = expected.collect();
@@ -103,11 +61,11 @@ fn events_and_scalars_are_those_of_the_record() -> Result<(), Error> {
         [(None, 1.0, false), (Some(2e9), 0.3, false), (None, 0.4, true)]
     {
         let record = record_of(32, area, hardness, periodic)?;
-        let data = data_of(&page_of("a path", &record)?);
+        let data = report::data(&page_of("a path", &record)?);
         let events = &data["records"][0]["events"];
         let states = record.states();
         let nodes = states.iter().map(|state| (state.node.0 + 32 * state.node.1) as u32);
-        assert_eq!(numbers(&events["nodes"]), nodes.collect::<Vec<_>>());
+        assert_eq!(report::numbers(&events["nodes"]), nodes.collect::<Vec<_>>());
         let kind = |event| match event {
             ContactEvent::Touch => 0,
             ContactEvent::Release => 1,
@@ -115,7 +73,7 @@ fn events_and_scalars_are_those_of_the_record() -> Result<(), Error> {
             _ => 2,
         };
         let kinds = states.iter().map(|state| kind(state.event));
-        assert_eq!(numbers(&events["kinds"]), kinds.collect::<Vec<_>>());
+        assert_eq!(report::numbers(&events["kinds"]), kinds.collect::<Vec<_>>());
         assert_eq!(
             hardness.is_some(),
             states.iter().any(|state| state.event == ContactEvent::Yield)
@@ -123,7 +81,7 @@ fn events_and_scalars_are_those_of_the_record() -> Result<(), Error> {
 
         let near = |name: &str, value: &dyn Fn(&asperity::ContactState) -> f64| {
             assert_near(
-                &column(events, name),
+                &report::column(events, name),
                 states.iter().map(|state| value(&state.contact)),
                 name,
             );
@@ -142,7 +100,7 @@ fn events_and_scalars_are_those_of_the_record() -> Result<(), Error> {
             edge.follow(state.event, state.node).unwrap();
             edge.corrected_area() / record.grid().nominal_area()
         });
-        assert_near(&column(events, "corrected"), corrected, "corrected area");
+        assert_near(&report::column(events, "corrected"), corrected, "corrected area");
         let contact = record.contact()?;
         let patches: Vec<_> = PatchHistory::new(&contact, boundary, Connectivity::Four).collect();
         let touches = states.iter().scan(0, |touches, state| {
@@ -150,7 +108,7 @@ fn events_and_scalars_are_those_of_the_record() -> Result<(), Error> {
             Some(*touches - 1)
         });
         let largest = touches.map(|i| patches[i].largest as f64);
-        assert_near(&column(events, "largest_patch"), largest, "largest patch");
+        assert_near(&report::column(events, "largest_patch"), largest, "largest patch");
     }
     Ok(())
 }
@@ -178,10 +136,10 @@ fn levels(left: &[u8], is_in: &[bool], nx: usize) -> Vec<u8> {
 #[test]
 fn fields_are_those_of_their_states() -> Result<(), Error> {
     let record = record_of(32, 0.4, Some(2e10), false)?;
-    let data = data_of(&page_of("a path", &record)?);
+    let data = report::data(&page_of("a path", &record)?);
     let fields = &data["records"][0]["fields"];
     let most = fields["levels"].as_f64().unwrap();
-    let left = inflated(&fields["data"]);
+    let left = report::bytes(&fields["data"]);
     let states = fields["states"].as_array().unwrap();
     assert!(states.len() > 12, "{}", states.len());
     let mut replay = record.replay()?;
@@ -223,7 +181,7 @@ fn the_page_of_a_rough_surface_is_small() -> Result<(), Error> {
     let history = path.run()?;
     let record = LoadingRecord::new(&path, history)?;
     let page = page_of("noise", &record)?;
-    let fields = &data_of(&page)["records"][0]["fields"];
+    let fields = &report::data(&page)["records"][0]["fields"];
     assert!(fields["data"].as_str().unwrap().len() <= 250_000);
     assert!(page.len() < 600_000, "{}", page.len());
     Ok(())
@@ -244,7 +202,7 @@ fn no_text_becomes_a_tag() -> Result<(), Error> {
             + page.matches("<!--").count()
     };
     assert_eq!(tags(&page), tags(&plain));
-    let data = data_of(&page);
+    let data = report::data(&page);
     assert_eq!(
         (data["records"][0]["name"].as_str(), data["command"].as_str()),
         (Some(hostile), Some(hostile))
@@ -290,7 +248,7 @@ fn without_a_kernel_there_are_no_fields() -> Result<(), Error> {
     let notes = report.notes();
     assert_eq!(notes.len(), 1, "{notes:?}");
     assert!(notes[0].starts_with("pressure, gap and residuals are missing: "), "{notes:?}");
-    assert!(data_of(&report.html())["records"][0]["fields"].is_null());
+    assert!(report::data(&report.html())["records"][0]["fields"].is_null());
     Ok(())
 }
 
@@ -326,7 +284,7 @@ fn tables_beside_the_record_are_shown() -> Result<(), Box<dyn std::error::Error>
     let shown = |source: &dyn Fn(Source<'_>) -> Source<'_>| -> Result<(Value, Vec<String>), Error> {
         let mut report = Report::new();
         report.add(source(Source::new("a", &record)))?;
-        Ok((data_of(&report.html())["records"][0].clone(), report.notes().to_vec()))
+        Ok((report::data(&report.html())["records"][0].clone(), report.notes().to_vec()))
     };
     let files = |record: &Value| -> Vec<String> {
         let panels = record["panels"].as_array().unwrap();
