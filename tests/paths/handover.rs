@@ -115,13 +115,13 @@ fn the_default_is_a_new_one() {
     assert_eq!(default.bytes(100, 10), Handover::new().bytes(100, 10));
 }
 
-/// An event costs n² times 10 ps, or 0.3 ms, 1.2 ns for each node of the grid and 4 ns for each one in contact,
+/// An event costs n² times 10 ps, or 0.2 ms, 3.5 ns for each node of the grid and 4 ns for each one in contact,
 /// whichever is less: they are equal at the root of a quadratic equation.
 #[test]
 fn a_factor_is_given_up_where_both_cost_the_same() {
     for side in [64_usize, 128, 256, 512, 2048] {
         let nodes = side * side;
-        let iterations = |contact: f64| 3e-4 + 1.2e-9 * nodes as f64 + 4e-9 * contact;
+        let iterations = |contact: f64| 2e-4 + 3.5e-9 * nodes as f64 + 4e-9 * contact;
         let discriminant = 4e-9_f64.powi(2) + 4.0 * 1e-11 * iterations(0.0);
         let root = (4e-9 + discriminant.sqrt()) / 2e-11;
         // The first number at which a factor is dearer, if there are so many nodes; rounding does not reach the next.
