@@ -72,10 +72,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
             return Ok(None);
         };
         let builder = AdhesivePath::builder(&sample.surface, &*sample.kernel, law);
-        let size = draw.whole(1, 40);
-        // All nodes of a flat surface may turn unstable at one instant: windows have to hold many of them.
-        let is_flat = sample.surface.peak_to_valley() == 0.0;
-        let builder = if is_flat { builder } else { builder.window_size(size) };
+        let builder = builder.window_size(draw.whole(1, 40));
         Ok(Some((builder.build()?, KernelTable::new(&*sample.kernel)?)))
     });
     let (path, table) = match set_up {

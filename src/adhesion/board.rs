@@ -179,6 +179,11 @@ impl Board {
         Some((first, lowest.unwrap_or(place)))
     }
 
+    /// Whether something happens to a row at once, but for rounding.
+    pub(super) fn is_due(&self, place: usize) -> bool {
+        self.left(place).is_some_and(|left| left.distance <= LAG * left.unit)
+    }
+
     fn left(&self, place: usize) -> Option<Left> {
         let row = &self.rows[place];
         let [dp, dgap] = self.rates(place);
@@ -467,6 +472,11 @@ impl Left {
             _ => None,
         }?;
         Some(Self { distance, rate, unit: range })
+    }
+
+    /// Whether it happens by a time, but for rounding.
+    pub(super) fn is_by(&self, time: f64) -> bool {
+        self.distance - time * self.rate <= LAG * self.unit
     }
 
     /// When.

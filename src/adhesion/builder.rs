@@ -57,11 +57,10 @@ impl AdhesiveBuilder<'_> {
         self
     }
 
-    /// How many nodes to watch beside those that are pulled with the greatest stress: as many events at most follow
-    /// from one solution. By default 64, or a quarter of the soft nodes. States do not depend on it, except by
-    /// rounding. With 1 every event has a solution of its own. Where many nodes of one height turn unstable at one
-    /// instant, as those of a flat surface do, few nodes are too few: rounding grows from one solution to the next, and
-    /// the path may end with [`AdhesionError::NotOnLaw`](crate::AdhesionError::NotOnLaw).
+    /// How many nodes to watch beside those that are pulled with the greatest stress, and those that tie with them: as
+    /// many events at most follow from one solution, and what happens at the instant of the last one. By default 64, or
+    /// a quarter of the soft nodes. States do not depend on it, except by rounding. With 1 every event has a solution
+    /// of its own, unless it ties with others.
     pub fn window_size(mut self, nodes: usize) -> Self {
         self.window_size = Some(nodes);
         self

@@ -224,8 +224,18 @@ impl<'a> Play<'a> {
         };
         let mut horizon = f64::INFINITY;
         if count < others.len() {
-            horizon = others.select_nth_unstable_by(count, order).1.0;
-            others.truncate(count);
+            others.select_nth_unstable_by(count, order);
+            // Those that tie with the last one are watched with it.
+            let last = others[..count].iter().map(|other| other.0).fold(0.0, f64::max);
+            let is_tied = |&(time, node): &(f64, usize)| {
+                let [[p, dp], [gap, dgap]] = line(node);
+                let left = Left::of(&body.law, front.nodes[node], [p, gap], [dp, dgap]);
+                time <= last || left.is_some_and(|left| left.is_by(last))
+            };
+            let rest = others.split_off(count);
+            let (tied, rest): (Vec<_>, Vec<_>) = rest.into_iter().partition(is_tied);
+            others.extend(tied);
+            horizon = rest.iter().map(|other| other.0).fold(f64::INFINITY, f64::min);
         }
         nodes.extend(others.iter().map(|&(_, node)| node));
         nodes.sort_unstable();
@@ -458,8 +468,10 @@ impl<'a> Play<'a> {
         };
         let limit = self.view.targets.time(self.view.gauge, &measured, self.view.direction);
         let first = until.min(limit);
-        if first == f64::INFINITY
-            || self.events > 0 && (self.time + first > self.end || self.events >= most)
+        // What happens at one instant does so in one window: behind a solution rounding grows from node to node.
+        let is_due = next.is_some_and(|(_, place)| self.board.is_due(place));
+        let is_enough = self.events >= most && !is_due;
+        if first == f64::INFINITY || self.events > 0 && (self.time + first > self.end || is_enough)
         {
             return false;
         }
@@ -520,7 +532,9 @@ impl<'a> Play<'a> {
         let event = next.map_or(f64::INFINITY, |(time, _)| time);
         let step = event.min(carry.corner).min(carry.law).min(carry.end);
         let is_beyond = self.parameter != Parameter::Approach && self.time + step > self.end;
-        if step == f64::INFINITY || self.events > 0 && (is_beyond || self.events >= most) {
+        let is_due = next.is_some_and(|(_, place)| self.board.is_due(place));
+        let is_enough = self.events >= most && !is_due;
+        if step == f64::INFINITY || self.events > 0 && (is_beyond || is_enough) {
             return false;
         }
         self.advance(step);

@@ -86,7 +86,7 @@ fn flat_surfaces_of_long_cells() {
     let sizes = [1, 2, 9, 40].map(Some);
     let shapes = [(8, 1), (32, 1), (64, 1), (9, 7)].map(|shape| (shape, &sizes[..]));
     for ((nodes, rows), sizes) in shapes.into_iter().chain([
-        ((16, 16), &[None][..]),
+        ((16, 16), &[Some(1), Some(5), None][..]),
         ((24, 24), &[None]),
         ((40, 10), &[None]),
     ]) {
