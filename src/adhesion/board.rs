@@ -169,11 +169,7 @@ impl Board {
         let times: Vec<(f64, usize)> = times.collect();
         let &(first, place) = times.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let tied = times.iter().filter(|&&(time, place)| {
-            time == first
-                || self.left(place).is_some_and(|left| {
-                    let Left { distance, rate, unit } = left;
-                    distance - first * rate <= TIE * unit
-                })
+            time == first || self.left(place).is_some_and(|left| left.is_by(first, TIE))
         });
         let lowest = tied.map(|&(_, place)| place).min_by_key(|&place| self.rows[place].node);
         Some((first, lowest.unwrap_or(place)))
@@ -181,7 +177,7 @@ impl Board {
 
     /// Whether something happens to a row at once, but for rounding.
     pub(super) fn is_due(&self, place: usize) -> bool {
-        self.left(place).is_some_and(|left| left.distance <= LAG * left.unit)
+        self.left(place).is_some_and(|left| left.is_by(0.0, LAG))
     }
 
     fn left(&self, place: usize) -> Option<Left> {
@@ -474,9 +470,9 @@ impl Left {
         Some(Self { distance, rate, unit: range })
     }
 
-    /// Whether it happens by a time, but for rounding.
-    pub(super) fn is_by(&self, time: f64) -> bool {
-        self.distance - time * self.rate <= LAG * self.unit
+    /// Whether no more than a part of the unit is left to it at a time.
+    pub(super) fn is_by(&self, time: f64, part: f64) -> bool {
+        self.distance - time * self.rate <= part * self.unit
     }
 
     /// When.

@@ -259,11 +259,11 @@ impl Body {
         let mut is_new = vec![false; self.problem.initial_gap().len()];
         nodes.iter().for_each(|&node| is_new[node] = true);
         let before = self.watched.nodes.iter().enumerate();
-        let is_needed: Vec<usize> =
+        let needed: Vec<usize> =
             before.filter(|(_, node)| is_new[**node]).map(|(k, _)| k).collect();
         let all = self.watched.nodes.len();
-        let stay = all - is_needed.len() <= nodes.len() / NEEDED_FOR_ONE;
-        let kept = if stay { (0..all).collect() } else { is_needed };
+        let stay = all - needed.len() <= nodes.len() / NEEDED_FOR_ONE;
+        let kept = if stay { (0..all).collect() } else { needed };
         let mut watched: Vec<usize> = kept.iter().map(|&place| self.watched.nodes[place]).collect();
         watched.iter().for_each(|&node| is_new[node] = false);
         for &node in nodes {

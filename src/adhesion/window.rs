@@ -62,8 +62,7 @@ pub(super) fn follow(
     let (mut most, mut watched) = (usize::MAX, size);
     let mut known = None;
     for taken_back in 0..TRIES {
-        let nodes = (watched, also.as_slice());
-        let mut play = Play::open(body, front, field, view, (nodes, known.take()))?;
+        let mut play = Play::open(body, front, field, view, (watched, &also), known.take())?;
         let may_grow = also.len() < size && taken_back < REOPENED;
         let ended = match play.play_out(body, front, field, (most.min(size), may_grow))? {
             Outcome::Nothing => return Ok(None),
@@ -198,7 +197,8 @@ impl<'a> Play<'a> {
         front: &Front,
         field: &Field,
         view: &'a View<'a>,
-        ((size, also), known): ((usize, &[usize]), Option<Rows>),
+        (size, also): (usize, &[usize]),
+        known: Option<Rows>,
     ) -> Result<Self, Error> {
         let line =
             |node: usize| [&field.pressure, &field.gap].map(|pair| [pair[0][node], pair[1][node]]);
@@ -230,7 +230,7 @@ impl<'a> Play<'a> {
             let is_tied = |&(time, node): &(f64, usize)| {
                 let [[p, dp], [gap, dgap]] = line(node);
                 let left = Left::of(&body.law, front.nodes[node], [p, gap], [dp, dgap]);
-                time <= last || left.is_some_and(|left| left.is_by(last))
+                time <= last || left.is_some_and(|left| left.is_by(last, LAG))
             };
             let rest = others.split_off(count);
             let (tied, rest): (Vec<_>, Vec<_>) = rest.into_iter().partition(is_tied);
@@ -468,9 +468,7 @@ impl<'a> Play<'a> {
         };
         let limit = self.view.targets.time(self.view.gauge, &measured, self.view.direction);
         let first = until.min(limit);
-        // What happens at one instant does so in one window: behind a solution rounding grows from node to node.
-        let is_due = next.is_some_and(|(_, place)| self.board.is_due(place));
-        let is_enough = self.events >= most && !is_due;
+        let is_enough = self.is_enough(most, next);
         if first == f64::INFINITY || self.events > 0 && (self.time + first > self.end || is_enough)
         {
             return false;
@@ -522,6 +520,12 @@ impl<'a> Play<'a> {
         !is_few && !self.board.is_worn
     }
 
+    /// Whether there have been so many events, and the next one does not come at once. What happens at one instant does
+    /// so in one window: behind a solution rounding grows from node to node.
+    fn is_enough(&self, most: usize, next: Option<(f64, usize)>) -> bool {
+        self.events >= most && !next.is_some_and(|(_, place)| self.board.is_due(place))
+    }
+
     /// One event along the pull of a node; false once the window ends.
     fn carry(&mut self, most: usize) -> bool {
         let Some(carry) = self.board.carry() else {
@@ -532,8 +536,7 @@ impl<'a> Play<'a> {
         let event = next.map_or(f64::INFINITY, |(time, _)| time);
         let step = event.min(carry.corner).min(carry.law).min(carry.end);
         let is_beyond = self.parameter != Parameter::Approach && self.time + step > self.end;
-        let is_due = next.is_some_and(|(_, place)| self.board.is_due(place));
-        let is_enough = self.events >= most && !is_due;
+        let is_enough = self.is_enough(most, next);
         if step == f64::INFINITY || self.events > 0 && (is_beyond || is_enough) {
             return false;
         }
