@@ -16,8 +16,8 @@ use crate::verdict::{Tally, Verdict, Violation, ensure};
 const LONGEST: f64 = 10.0;
 /// Nodes of which all states are tried: 4⁸ of them.
 const TRIED: usize = 8;
-/// Gaps relative to the range and the greatest length, pressures relative to the greatest, and energies relative to
-/// their greatest: rounding of solutions whose condition is 10³ at most, with two digits to spare.
+/// Gaps relative to the range and the greatest length, pressures relative to the greatest of the walk, and energies
+/// relative to their greatest: rounding of solutions whose condition is 10³ at most, with two digits to spare.
 const GAP: f64 = 1e-9;
 const ENERGY: f64 = 1e-9;
 
@@ -91,6 +91,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let mut trial = Trial {
         exact: Equilibria::of(path.problem(), path.law()),
         gauge: table.gauge().unwrap_or_default(),
+        greatest: path.law().stress(),
         path,
         sample,
         tally: Tally::default(),
@@ -138,6 +139,8 @@ struct Trial<'a> {
     exact: Equilibria,
     /// What a unit sum of pressures displaces the mean planes by.
     gauge: f64,
+    /// The greatest pressure or mean pressure so far, or σ₀.
+    greatest: f64,
     sample: &'a Sample,
     tally: Tally,
 }
@@ -220,6 +223,9 @@ impl Trial<'_> {
             dissipated = state.dissipated;
             let sum = energies.iter().sum();
             self.tally.close("work", state.work, sum, ENERGY * greatest)?;
+            // A window goes on from what rounding has made of its first state.
+            let mean = state.contact.load.abs() / self.path.grid().nominal_area();
+            self.greatest = self.greatest.max(mean);
             self.tally.checked += 1;
         }
         Ok(())
@@ -231,7 +237,8 @@ impl Trial<'_> {
         let problem = self.path.problem();
         let pressure = &fields.pressure;
         let approach = state.contact.approach + self.gauge * pressure.sum();
-        let greatest = pressure.amax().max(law.stress());
+        self.greatest = pressure.amax().max(self.greatest);
+        let greatest = self.greatest;
         let length = self.length() + approach.abs();
         for (node, kind) in fields.nodes.iter().enumerate() {
             let displaced = pressure.iter().enumerate().map(|(other, p)| {

@@ -56,8 +56,8 @@ pub(super) struct Board {
     pub(super) sums: [f64; 2],
     /// Nodes whose traction is held, those that are carried first.
     pub(super) held: Vec<(usize, f64)>,
-    /// The row whose pull is the parameter, if one is.
-    carried: Option<usize>,
+    /// The row whose pull is the parameter, if one is, and whether that grows, 1, or falls, −1.
+    carried: Option<(usize, f64)>,
     /// 1 or −1: loading or unloading.
     sign: f64,
     /// Nodes in contact, on the whole grid.
@@ -89,8 +89,11 @@ pub(super) struct Beginning {
 impl Board {
     pub(super) fn new(begin: Beginning) -> Self {
         let carried = begin.held.first().filter(|_| begin.is_carried);
-        let carried =
-            carried.and_then(|&(node, _)| begin.rows.iter().position(|row| row.node == node));
+        let carried = carried.and_then(|&(node, _)| {
+            let place = begin.rows.iter().position(|row| row.node == node)?;
+            let Row { pressure, gap, .. } = begin.rows[place];
+            Some((place, begin.law.direction([pressure, gap], begin.sign)))
+        });
         let rates = begin.rates.iter().copied().chain(begin.sums.iter().map(|[_, rate]| *rate));
         Self {
             law: begin.law,
@@ -147,10 +150,10 @@ impl Board {
     /// Rates of pressure and gap.
     pub(super) fn rates(&self, place: usize) -> [f64; 2] {
         let rate = self.along[place];
-        match self.rows[place].state {
-            NodeState::Contact => [rate, 0.0],
-            NodeState::Soft => [rate, rate * self.compliance()],
-            _ if self.carried == Some(place) => [-self.sign, rate],
+        match (self.rows[place].state, self.carried) {
+            (NodeState::Contact, _) => [rate, 0.0],
+            (NodeState::Soft, _) => [rate, rate * self.compliance()],
+            (_, Some((carried, direction))) if carried == place => [-direction, rate],
             _ => [0.0, rate],
         }
     }
@@ -207,7 +210,7 @@ impl Board {
         }
         let rates = self.sum_rates();
         self.sums.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += step * rate);
-        if let (Some(place), Some((_, pull))) = (self.carried, self.held.first_mut()) {
+        if let (Some((place, _)), Some((_, pull))) = (self.carried, self.held.first_mut()) {
             *pull = -self.rows[place].pressure;
         }
         lost
@@ -288,9 +291,7 @@ impl Board {
             NodeState::Held => {
                 let node = self.rows[place].node;
                 self.held.retain(|&(held, _)| held != node);
-                if self.carried == Some(place) {
-                    self.carried = None;
-                }
+                self.carried = self.carried.filter(|&(carried, _)| carried != place);
                 self.touch(place);
             }
             NodeState::Contact => self.part(place),
@@ -333,10 +334,12 @@ impl Board {
     /// Makes the pull of the first node that is held the parameter.
     pub(super) fn carry_next(&mut self) {
         let node = self.held.first().map(|&(node, _)| node);
-        self.carried = self.rows.iter().position(|row| Some(row.node) == node);
-        if let Some(place) = self.carried {
+        if let Some(place) = self.rows.iter().position(|row| Some(row.node) == node) {
+            let Row { pressure, gap, .. } = self.rows[place];
+            let direction = self.law.direction([pressure, gap], self.sign);
+            self.carried = Some((place, direction));
             let mut rates = self.answers.column(place);
-            rates.iter_mut().for_each(|rate| *rate *= -self.sign);
+            rates.iter_mut().for_each(|rate| *rate *= -direction);
             let before = std::mem::replace(&mut self.along, rates);
             self.along_approach.get_or_insert(before);
         }
@@ -353,17 +356,17 @@ impl Board {
     /// How far the pull of the carried row may go before its own law, or an end of that, comes first; `None` once it is
     /// back on its law, stable, or was none.
     pub(super) fn carry(&mut self) -> Option<Carry> {
-        let place = self.carried?;
+        let (place, direction) = self.carried?;
         let law = self.law;
         let (gap, pull) = (self.rows[place].gap, -self.rows[place].pressure);
         let corner = CORNER * law.range();
-        let is_loading = self.sign > 0.0;
-        let on_slope = if is_loading {
+        let grows = direction > 0.0;
+        let on_slope = if grows {
             gap <= law.range() + corner && gap > law.flat_range() + corner
         } else {
             gap >= law.flat_range() - corner && gap < law.range() - corner
         };
-        let lag = self.sign * (law.pull(gap) - pull);
+        let lag = direction * (law.pull(gap) - pull);
         let gain = if on_slope { -self.softness(place) } else { 1.0 };
         if lag <= LAG * law.stress() && gain > 0.0 {
             self.held.remove(0);
@@ -385,15 +388,15 @@ impl Board {
         Some(Carry {
             corner: corners.fold(f64::INFINITY, f64::min),
             law: if gain > 0.0 { lag / gain } else { f64::INFINITY },
-            end: (if is_loading { law.stress() - pull } else { pull }).max(0.0),
+            end: (if grows { law.stress() - pull } else { pull }).max(0.0),
         })
     }
 
     /// Lets go of the carried row at the end of the range of pulls, where it has passed the corner of its law.
     pub(super) fn let_go(&mut self) {
-        if let Some(place) = self.carried.take() {
+        if let Some((place, direction)) = self.carried.take() {
             self.held.remove(0);
-            let to = if self.sign > 0.0 { NodeState::Cohesive } else { NodeState::Open };
+            let to = if direction > 0.0 { NodeState::Cohesive } else { NodeState::Open };
             self.change(place, to);
         }
     }

@@ -254,7 +254,8 @@ impl Body {
         Ok(())
     }
 
-    /// Watches some nodes; those that were watched before come first, and stay if few of them are needed no more.
+    /// Watches some nodes; those that were watched before come first, and stay if few of them are needed no more
+    /// and there is memory for these.
     fn watch(&mut self, nodes: &[usize]) -> Result<(), Error> {
         let mut is_new = vec![false; self.problem.initial_gap().len()];
         nodes.iter().for_each(|&node| is_new[node] = true);
@@ -262,7 +263,10 @@ impl Body {
         let needed: Vec<usize> =
             before.filter(|(_, node)| is_new[**node]).map(|(k, _)| k).collect();
         let all = self.watched.nodes.len();
-        let stay = all - needed.len() <= nodes.len() / NEEDED_FOR_ONE;
+        let others = all - needed.len();
+        let with_others = others + is_new.iter().filter(|is_new| **is_new).count();
+        let stay = others <= nodes.len() / NEEDED_FOR_ONE
+            && self.check_budget(self.contact.len(), with_others).is_ok();
         let kept = if stay { (0..all).collect() } else { needed };
         let mut watched: Vec<usize> = kept.iter().map(|&place| self.watched.nodes[place]).collect();
         watched.iter().for_each(|&node| is_new[node] = false);
@@ -494,6 +498,12 @@ impl Body {
         }
         let mut field = Field { pressure, gap: base };
         self.settle(front, &mut field)?;
+        if let Parameter::Pull(node) = front.parameter()
+            && self.law.direction([field.pressure[0][node], field.gap[0][node]], sign) != sign
+        {
+            let [[_, dp], [_, dgap]] = [&mut field.pressure, &mut field.gap];
+            dp.iter_mut().chain(dgap).for_each(|rate| *rate = -*rate);
+        }
         Ok(field)
     }
 
