@@ -157,6 +157,40 @@ fn with_a_map_of_hardness(record: &Path) -> Result<String, Box<dyn Error>> {
     Ok(format!("{}\n{}\n", PathTable::HEADER, lines.join("\n")))
 }
 
+/// Records the path of a row as `r.npz`, the elastic one of what is left for the row after unloading. Returns the table
+/// of its states.
+fn record(folder: &Path, name: &str, options: &str) -> Result<String, Box<dyn Error>> {
+    let path = command(options);
+    let lines = match name {
+        "hardness per node" => return with_a_map_of_hardness(&folder.join("r.npz")),
+        "resumed" => vec![
+            format!("{} --record r.npz --out first", path.replace("0.3", "0.1")),
+            "path --resume r.npz --max-area-fraction 0.3 --record r.npz --out o -q".to_string(),
+        ],
+        "after unloading" => {
+            let residual = format!("{RESIDUAL} --max-area-fraction 0.25 -q --record r.npz");
+            vec![format!("{path} --out o"), format!("{residual} --out o")]
+        }
+        _ => vec![format!("{path} --record r.npz --out o")],
+    };
+    for line in lines {
+        assert!(is_followed(folder, &line)?, "{name}: {line}");
+    }
+    Ok(fs::read_to_string(folder.join("o/path.csv"))?)
+}
+
+/// Whether the program does what is asked. Asserts that it refuses it where a cell of the page has the letter of a
+/// reason, and with that.
+fn is_as_the_page_says(folder: &Path, line: &str, cell: &str) -> Result<bool, Box<dyn Error>> {
+    let found = refused(folder, line)?;
+    let reason = REASONS.iter().find(|(letter, _)| *letter == cell);
+    assert_eq!(found.is_some(), reason.is_some(), "{line}: {found:?}");
+    if let (Some(said), Some((_, words))) = (&found, reason) {
+        assert!(said.contains(words), "{line}: {said}");
+    }
+    Ok(found.is_none())
+}
+
 #[test]
 fn reports_are_their_paths() -> Done {
     let table = tables(&page()?, "path");
@@ -164,33 +198,9 @@ fn reports_are_their_paths() -> Done {
     let place = header.iter().position(|column| column == "report").ok_or("no column")?;
     for ((name, options, _), line) in ROWS.iter().zip(lines) {
         let folder = Scratch::new(&format!("together-report-{}", name.replace(' ', "-")))?;
-        let path = command(options);
-        let csv = match *name {
-            "hardness per node" => with_a_map_of_hardness(&folder.join("r.npz"))?,
-            "resumed" => {
-                let first = path.replace("0.3", "0.1");
-                assert!(is_followed(&folder.0, &format!("{first} --record r.npz --out first"))?);
-                let on = "path --resume r.npz --max-area-fraction 0.3 --record r.npz --out o -q";
-                assert!(is_followed(&folder.0, on)?);
-                fs::read_to_string(folder.join("o/path.csv"))?
-            }
-            "after unloading" => {
-                assert!(is_followed(&folder.0, &format!("{path} --out o"))?);
-                let on = format!("{RESIDUAL} --max-area-fraction 0.25 -q --record r.npz");
-                assert!(is_followed(&folder.0, &on)?);
-                fs::read_to_string(folder.join("out/path.csv"))?
-            }
-            _ => {
-                assert!(is_followed(&folder.0, &format!("{path} --record r.npz --out o"))?);
-                fs::read_to_string(folder.join("o/path.csv"))?
-            }
-        };
-        let refused = refused(&folder.0, "report r.npz --out page.html")?;
-        let reason = REASONS.iter().find(|(letter, _)| *letter == line[place]);
-        assert_eq!(refused.is_some(), reason.is_some(), "{name}: {refused:?}");
-        match (refused, reason) {
-            (Some(said), Some((_, words))) => assert!(said.contains(words), "{name}: {said}"),
-            _ => assert_reports(&fs::read_to_string(folder.join("page.html"))?, &csv, name),
+        let csv = record(&folder.0, name, options)?;
+        if is_as_the_page_says(&folder.0, "report r.npz --out page.html", &line[place])? {
+            assert_reports(&fs::read_to_string(folder.join("page.html"))?, &csv, name);
         }
     }
     Ok(())
@@ -219,26 +229,15 @@ fn the_program_refuses_what_the_page_says() -> Done {
             continue;
         }
         let folder = Scratch::new(&format!("together-program-{}", name.replace(' ', "-")))?;
-        let path = command(options);
-        assert!(is_followed(&folder.0, &format!("{path} --record r.npz --out o"))?, "{name}");
-        if *name == "after unloading" {
-            let again = format!("{RESIDUAL} --max-area-fraction 0.25 -q --record r.npz");
-            assert!(is_followed(&folder.0, &again)?, "{name}");
-        }
-        let csv = fs::read_to_string(folder.join("out/path.csv"))
-            .or_else(|_| fs::read_to_string(folder.join("o/path.csv")))?;
+        let csv = record(&folder.0, name, options)?;
         let last = csv.lines().last().and_then(|line| line.split(',').nth(5));
         let load = 0.1 * last.ok_or("no load")?.parse::<f64>()?;
+        let own = command(options);
+        let path = if *name == "after unloading" { RESIDUAL } else { &own };
         for (column, command) in COMMANDS {
             let place = header.iter().position(|other| other == column).ok_or("no column")?;
-            let path = if *name == "after unloading" { RESIDUAL } else { &path };
             let command = command.replace("PATH", path).replace("LOAD", &load.to_string());
-            let found = refused(&folder.0, &format!("{command} --out o2"))?;
-            let reason = REASONS.iter().find(|(letter, _)| *letter == line[place]);
-            assert_eq!(found.is_some(), reason.is_some(), "{name}, {command}: {found:?}");
-            if let (Some(said), Some((_, words))) = (&found, reason) {
-                assert!(said.contains(words), "{name}: {said}");
-            }
+            is_as_the_page_says(&folder.0, &format!("{command} --out o2"), &line[place])?;
         }
     }
     Ok(())
