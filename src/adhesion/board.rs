@@ -364,7 +364,9 @@ impl Board {
         let on_slope = if grows {
             gap <= law.range() + corner && gap > law.flat_range() + corner
         } else {
-            gap >= law.flat_range() - corner && gap < law.range() - corner
+            // A triangle has nothing below its slope: there a gap below 0 is rounding.
+            let is_above = law.flat_range() == 0.0 || gap >= law.flat_range() - corner;
+            is_above && gap < law.range() - corner
         };
         let lag = direction * (law.pull(gap) - pull);
         let gain = if on_slope { -self.softness(place) } else { 1.0 };
