@@ -142,6 +142,12 @@ impl Outcome {
         self.failures.extend(result.err());
     }
 
+    /// The files that were written.
+    #[must_use]
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
     /// Keeps the name of a file, or the failure to write it.
     pub fn written(&mut self, result: Result<PathBuf, Failure>) {
         match result {

@@ -38,11 +38,16 @@ impl fmt::Display for Resolution {
         if self.patches == 0 {
             return write!(f, "no patch");
         }
+        let size = match self.patches {
+            1 => counted(self.contact_nodes, "node"),
+            patches => {
+                format!("{:.1} nodes on average", self.contact_nodes as f64 / patches as f64)
+            }
+        };
         write!(
             f,
-            "{} of {:.1} nodes on average; contact area {} as counted in cells, {} corrected ({:.1} % less)",
+            "{} of {size}; contact area {} as counted in cells, {} corrected ({:.1} % less)",
             counted(self.patches, "patch"),
-            self.contact_nodes as f64 / self.patches as f64,
             area(self.area, 4),
             area(self.corrected_area, 4),
             100.0 * (1.0 - self.corrected_area / self.area)

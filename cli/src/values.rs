@@ -134,11 +134,15 @@ impl Dimension {
     /// In SI units.
     fn read(&self, text: &str) -> Result<f64, String> {
         let (number, unit) = split(text)?;
-        let factor = self.factor(unit).ok_or_else(|| {
-            let units: Vec<&str> = self.units.iter().map(|(name, _)| *name).collect();
-            format!("'{unit}' is no unit of {}, as are {}", self.name, units.join(", "))
-        })?;
+        let factor = self.factor(unit);
+        let factor = factor.ok_or_else(|| format!("'{unit}' is no unit of {}", self.in_words()))?;
         scaled(number, factor)
+    }
+
+    /// `length (m, mm, µm, nm)`.
+    fn in_words(&self) -> String {
+        let units: Vec<&str> = self.units.iter().map(|(name, _)| *name).collect();
+        format!("{} ({})", self.name, units.join(", "))
     }
 
     /// A unit in SI units, `None` if it is none. Case decides between two, as mN and MN.
@@ -147,7 +151,8 @@ impl Dimension {
             return Some(1.0);
         }
         if self.name == LENGTH.name {
-            return unit.parse().ok().map(LengthUnit::metres);
+            let found = unit.parse().or_else(|_| unit.to_lowercase().parse());
+            return found.ok().map(LengthUnit::metres);
         }
         let unit = plain(unit);
         let found = |is: &dyn Fn(&str) -> bool| {
@@ -168,8 +173,8 @@ pub(crate) fn any_of<T>(text: &str, kinds: &[Kind<T>]) -> Result<T, String> {
     let (_, unit) = split(text)?;
     let found = kinds.iter().find(|(dimension, _)| dimension.factor(unit).is_some());
     let (dimension, made) = found.ok_or_else(|| {
-        let names: Vec<&str> = kinds.iter().map(|(dimension, _)| dimension.name).collect();
-        format!("'{unit}' is no unit of {}", names.join(", "))
+        let names: Vec<_> = kinds.iter().map(|(dimension, _)| dimension.in_words()).collect();
+        format!("'{unit}' is no unit of {}", names.join(" or "))
     })?;
     dimension.positive()(text).map(made)
 }
@@ -192,6 +197,9 @@ fn split(text: &str) -> Result<(&str, &str), String> {
     let ends = text.char_indices().map(|(at, _)| at).chain([text.len()]);
     let end = ends.rev().find(|end| text[..*end].trim_end().parse::<f64>().is_ok());
     let (number, unit) = text.split_at(end.ok_or("not a number")?);
+    if unit.starts_with(',') {
+        return Err(format!("'{text}' has a comma: write a decimal point"));
+    }
     Ok((number.trim_end(), unit.trim_start()))
 }
 
@@ -343,9 +351,7 @@ mod tests {
         assert_eq!(PRESSURE.not_negative()("0"), Ok(0.0));
         assert_eq!(ANGLE.any()("-45°"), Ok(-45.0));
         assert!(ANGLE.any()("inf").is_err());
-        for (text, words) in
-            [("5mm", "'mm' is no unit of pressure, as are Pa, "), ("x", "not a number")]
-        {
+        for (text, words) in [("5mm", "'mm' is no unit of pressure (Pa, "), ("x", "not a number")] {
             let error = PRESSURE.positive()(text).err().unwrap_or_default();
             assert!(error.contains(words), "{error}");
         }

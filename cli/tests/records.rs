@@ -205,7 +205,7 @@ fn a_small_budget_loses_nothing() -> Done {
         let out = folder.join("out");
         for name in [
             "r.npz",
-            "path.csv",
+            "path.csv.part",
             "settings.json",
             "pressure.npy",
             "gap.npy",
@@ -216,7 +216,7 @@ fn a_small_budget_loses_nothing() -> Done {
         }
         let told = String::from_utf8(done.stdout)?;
         assert!(told.contains("ended by: the memory budget") && !told.contains("NaN"), "{told}");
-        let states = fs::read_to_string(out.join("path.csv"))?.lines().count() - 1;
+        let states = fs::read_to_string(out.join("path.csv.part"))?.lines().count() - 1;
         assert!(states > 100 && told.contains(&format!("{states} states in")), "{told}");
         fs::remove_dir_all(out)?;
     }
@@ -244,6 +244,20 @@ fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<
     Ok(process.wait_with_output()?)
 }
 
+/// Files that a path does not write again are said to be of an earlier one.
+#[test]
+fn files_of_an_earlier_path_are_named() -> Done {
+    let folder = Scratch::new("records-earlier")?;
+    let told = printed(&folder.0, "path --nodes 32 --fields npy --at 1MPa")?;
+    assert!(!told.contains("earlier"), "{told}");
+    let done = output(&folder.0, "path --nodes 32 --at 2MPa")?;
+    let told = said(&done);
+    let left = "note: of an earlier path: out/contact_map_1MPa.png, out/gap.npy, out/gap_1MPa.npy, out/pressure.npy, \
+                out/pressure_1MPa.npy";
+    assert!(done.status.success() && told.contains(left), "{told}");
+    Ok(())
+}
+
 /// The first Ctrl-C keeps the path, and says how to go on.
 #[cfg(unix)]
 #[test]
@@ -255,8 +269,10 @@ fn interrupted_paths_go_on() -> Done {
         let done = signalled(&folder.0, &format!("{LONG} {options}"), &["-INT"])?;
         let said = said(&done);
         assert_eq!(done.status.code(), Some(130), "{said}");
-        let states = fs::read_to_string(folder.join("out/path.csv"))?.lines().count() - 1;
+        let states = fs::read_to_string(folder.join("out/path.csv.part"))?.lines().count() - 1;
         assert!(states < 4915, "it was at its end");
+        // `gather` takes no path that has not ended.
+        assert!(!folder.join("out/path.csv").exists());
         let told = format!(
             "{states} states in {record}; continue with `asperity path --resume {record} --max-area-fraction 0.3 --updater cholesky`"
         );

@@ -407,7 +407,7 @@ fn a_command_line_without_a_command_gets_a_tip() -> Done {
     for (line, tip) in [
         ("rough.npy", "`asperity info rough.npy`"),
         ("--out there", "`asperity path --out ...`"),
-        ("path --mean-pressure 5mm", "'mm' is no unit of pressure, as are Pa"),
+        ("path --mean-pressure 5mm", "'mm' is no unit of pressure (Pa, "),
         ("path --hardness 70HRC", "between 20 and 68"),
     ] {
         let done = output(&folder.0, line)?;

@@ -193,7 +193,7 @@ fn print(
     };
     say!("roughness     {}", roughness(map));
     if let Some(gradient) = whole.rms_gradient() {
-        say!("rms gradient  {gradient:.4}");
+        say!("rms gradient  {:.4}", gradient.abs());
     }
     let failed = |error| Failure::new("cannot remove the tilt", error);
     let levelled = whole.surface.level(Trend::Plane).map_err(failed)?;
@@ -201,11 +201,13 @@ fn print(
     // What a difference of squares leaves of rounding is no tilt.
     let tilt = if tilt > 1e-12 * map.rms_height().powi(2) { tilt.sqrt() } else { 0.0 };
     say!("tilt          {} rms; without it {}", length(tilt), roughness(levelled.map()));
-    say!(
-        "shape         skewness Ssk {:.3}, kurtosis Sku {:.3} (normal: 0, 3), without the tilt",
-        levelled.map().skewness(),
-        levelled.map().kurtosis()
-    );
+    let (skewness, kurtosis) = (levelled.map().skewness(), levelled.map().kurtosis());
+    // A plane has none.
+    if skewness.is_finite() {
+        say!(
+            "shape         skewness Ssk {skewness:.3}, kurtosis Sku {kurtosis:.3} (normal: 0, 3), without the tilt"
+        );
+    }
     if let Some(texture) = texture {
         print_texture(texture);
     }

@@ -141,11 +141,11 @@ impl PathFile {
         directory: &Path,
         table: PathTable,
         conductions: (Vec<Named>, Layering),
-        states: &[LoadingState],
+        (states, is_whole): (&[LoadingState], bool),
     ) -> Result<(), Failure> {
         let mut file = Self::create(directory, table, conductions)?;
         states.iter().try_for_each(|state| file.write(state))?;
-        file.finish().map(drop)
+        file.finish(is_whole).map(drop)
     }
 
     /// Adds a state.
@@ -160,8 +160,8 @@ impl PathFile {
         self.lines.add(&line)
     }
 
-    /// Ends the file, and gives it its name.
-    pub(super) fn finish(self) -> Result<PathBuf, Failure> {
-        self.lines.finish()
+    /// Ends the file, and gives it its name if it is that of a whole path.
+    pub(super) fn finish(self, is_whole: bool) -> Result<PathBuf, Failure> {
+        self.lines.finish(is_whole)
     }
 }

@@ -9,7 +9,7 @@ use asperity_cli::outcome::Failure;
 /// Lines between two visits to the disk.
 pub(super) const STRIDE: usize = 64;
 
-/// A file of lines. While it is written its name ends with `.part`, and what it holds are whole lines.
+/// A file of lines. Until its path has ended its name ends with `.part`, and what it holds are whole lines.
 pub(super) struct Lines {
     name: PathBuf,
     part: PathBuf,
@@ -57,12 +57,14 @@ impl Lines {
         Ok(())
     }
 
-    /// Ends the file, and gives it its name.
-    pub(super) fn finish(mut self) -> Result<PathBuf, Failure> {
-        self.flush()
-            .and_then(|()| fs::rename(&self.part, &self.name))
-            .map_err(|error| Failure::writing(&self.part, error))?;
-        Ok(self.name)
+    /// Ends the file, and gives it its name if it is that of a whole path.
+    pub(super) fn finish(mut self, is_whole: bool) -> Result<PathBuf, Failure> {
+        let written = self.flush().and_then(|()| match is_whole {
+            true => fs::rename(&self.part, &self.name),
+            false => Ok(()),
+        });
+        written.map_err(|error| Failure::writing(&self.part, error))?;
+        Ok(if is_whole { self.name } else { self.part })
     }
 }
 

@@ -2,13 +2,14 @@
 //!
 //! Writes `settings.json`, `path.csv` with one line for each state, `loading_curve.svg` and `contact_map.png`, the
 //! record of the path and its page if they are asked for, and prints a short table. If the path ends with an error,
-//! everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and `path.csv` are
-//! written, and the exit code is 130.
+//! everything up to there is written all the same, `path.csv` as `path.csv.part`, and the exit code is 1. After Ctrl-C
+//! the record and `path.csv.part` are written, and the exit code is 130.
 
 mod adhesive;
 mod again;
 mod conductance_chart;
 mod curves;
+mod earlier;
 mod expected;
 pub(crate) mod fields;
 mod follow;
@@ -49,6 +50,7 @@ use crate::conduction::Named;
 use crate::ensemble::Member;
 use crate::report;
 use crate::settings::Settings;
+use earlier::Earlier;
 use expected::Expected;
 use follow::{Followed, PathFile};
 use interrupt::Interrupt;
@@ -69,7 +71,12 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
         if options.dry_run {
             return estimate(options, "");
         }
-        return follow_one(options, given, &interrupt, None)?.finish();
+        let earlier = Earlier::of(&options.out);
+        let outcome = follow_one(options, given, &interrupt, None)?;
+        let left = earlier.told(outcome.files());
+        outcome.finish()?;
+        left.into_iter().for_each(|left| note!("note: {left}"));
+        return Ok(());
     }
     let there = options.ensemble.there(&options.out)?;
     // What is there must be what would be computed now.
@@ -184,6 +191,7 @@ fn follow_one(
     let is_interrupted = interrupt.wait_no_longer() && solver.end().is_none();
     let (mut states, file) = followed.end();
     let seconds = start.elapsed().as_secs_f64();
+    let is_whole = ended.is_ok() && !is_interrupted;
 
     // Each of these is tried whatever became of the others: nothing computed is lost.
     let mut outcome = Outcome::default();
@@ -193,14 +201,14 @@ fn follow_one(
         let place = options.out.join("interrupted.npz");
         let name = job.record().unwrap_or(&place);
         outcome.written(save(name, &job, &solver, &states, &[]));
-        outcome.written(file.finish());
+        outcome.written(file.finish(is_whole));
         outcome.finish()?;
         return Err(interrupted(given, name, states.len()));
     }
     // First without the fields, which take time and memory.
     let record = job.record();
     let mut kept = record.map(|name| save(name, &job, &solver, &states, &[]));
-    outcome.written(file.finish());
+    outcome.written(file.finish(is_whole));
     if conducts_at_end {
         let table = PathTable::new(job.grid(), job.boundary());
         outcome.note(
@@ -209,7 +217,7 @@ fn follow_one(
                 .map_err(|error| Failure::new("cannot compute the stiffness on unloading", error))
                 .and_then(|()| {
                     let conductions = (conductions.clone(), job.layering());
-                    PathFile::write_whole(&options.out, table, conductions, &states)
+                    PathFile::write_whole(&options.out, table, conductions, (&states, is_whole))
                 }),
         );
     }

@@ -164,7 +164,10 @@ fn of_fields(job: &Job, fields: &ContactFields) -> Result<Vec<String>, Error> {
     let of_contact = Warning::of_contact(&fields.pressure, &fields.contact_map, on)?;
     // With a hardness it is what was asked for.
     let high = job.bodies().warning_of(fields.pressure.max()).filter(|_| !job.has_hardness());
-    let found = high.into_iter().chain(of_contact);
+    // On a flat surface the states of `--at` have a load behind the end of the path.
+    let is_known =
+        |warning: &Warning| matches!(warning, Warning::NoLoad { .. }) && !job.at().is_empty();
+    let found = high.into_iter().chain(of_contact).filter(|warning| !is_known(warning));
     Ok(found.map(|warning| crate::advice::told(&warning)).collect())
 }
 
@@ -178,8 +181,14 @@ pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Fa
         // A flat surface, whose nodes all touch before there is a load, says nothing of units.
         && fields.pressure.max() > 0.0
     {
+        let beyond = match (solver.end(), job.at()) {
+            (Some(LoadingEnd::FullContact), [_, ..]) => {
+                " Beyond full contact its states are those of a straight line."
+            }
+            _ => "",
+        };
         warnings.push(format!(
-            "the path ended before {target}. If you did not expect this, check the units: E* is {} Pa",
+            "the path ended before {target}.{beyond} If you did not expect this, check the units: E* is {} Pa",
             scientific(job.e_star(), 3)
         ));
     }

@@ -122,12 +122,16 @@ impl fmt::Display for Warning {
                     "the rms gradient of the surface is {rms_gradient:.3}; the theory needs slopes well below 1"
                 )?;
                 // The first unit that makes a surface of it.
-                let smaller = [(1e-3, "a thousand"), (1e-6, "a million"), (1e-9, "10⁹")];
-                let fits = |(factor, _): &&(f64, &str)| rms_gradient * factor < 0.5 * STEEP;
+                let smaller = [
+                    (1e-3, "a thousand", "nm for µm, or µm for mm"),
+                    (1e-6, "a million", "nm for mm, or µm for m"),
+                    (1e-9, "10⁹", "nm for m"),
+                ];
+                let fits = |smaller: &&(f64, _, _)| rms_gradient * smaller.0 < 0.5 * STEEP;
                 match smaller.iter().find(fits) {
-                    Some((factor, times)) => write!(
+                    Some((factor, times, units)) => write!(
                         f,
-                        ". With heights {times} times smaller (nm for µm, or µm for mm and so on) it would be \
+                        ". With heights {times} times smaller ({units}) it would be \
                          {:.2e}: are the units of heights and sides right?",
                         rms_gradient * factor
                     ),

@@ -97,12 +97,13 @@ pub(super) fn follow(
     let is_interrupted = interrupt.wait_no_longer() && !course.is_done();
     let (followed, lines) = course.end();
     let seconds = start.elapsed().as_secs_f64();
+    let is_whole = ended.is_ok() && !is_interrupted;
 
     // Each of these is tried whatever became of the others: nothing computed is lost.
     let mut outcome = Outcome::default();
     outcome.written(Ok(settings));
     outcome.note(ended);
-    outcome.written(lines.finish());
+    outcome.written(lines.finish(is_whole));
     if is_interrupted {
         let place = options.out.join("interrupted.npz");
         let name = job.record().unwrap_or(&place);

@@ -107,8 +107,8 @@ impl Header {
         let header = Self::read(bytes)?;
         let found = header.shape.len();
         let sides = header.shape[..].try_into();
-        let sides =
-            sides.map_err(|_| fault!("the array has {found} dimensions, but {N} were expected"))?;
+        let sides = sides
+            .map_err(|_| fault!("the number of dimensions is {found}, but {N} was expected"))?;
         Ok((header, sides))
     }
 

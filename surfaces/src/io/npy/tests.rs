@@ -202,10 +202,10 @@ fn dimensions_are_those_asked_for() -> TestResult {
     assert_eq!(text(&plain)?, "é");
     let flat = of("<f8", &[1, 1], &number);
     for (fault, expected) in [
-        (vector(&flat).err(), "has 2 dimensions, but 1 were expected"),
-        (vector(&plain).err(), "has 0 dimensions, but 1 were expected"),
-        (text(&single).err(), "has 1 dimensions, but 0 were expected"),
-        (matrix(&single).err(), "has 1 dimensions, but 2 were expected"),
+        (vector(&flat).err(), "of dimensions is 2, but 1 was expected"),
+        (vector(&plain).err(), "of dimensions is 0, but 1 was expected"),
+        (text(&single).err(), "of dimensions is 1, but 0 was expected"),
+        (matrix(&single).err(), "of dimensions is 1, but 2 was expected"),
     ] {
         assert!(fault.is_some_and(|fault| fault.to_string().ends_with(expected)), "{expected}");
     }
