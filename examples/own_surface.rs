@@ -38,8 +38,8 @@
 
 use std::f64::consts::TAU;
 
+use asperity::nalgebra::DMatrix;
 use asperity::{Boussinesq, Error, Grid, LoadingSolver, SelfAffine, Surface, SurfaceError};
-use nalgebra::DMatrix;
 
 /// Parallel ridges, a wavelength apart.
 #[derive(Clone, Copy)]

@@ -46,6 +46,9 @@
 //! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface, [`SemiPeriodicBoussinesq`] for one that repeats along one side; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
+//! | displacements of given pressures | [`convolution`] |
+//! | states, what a path may end at, fields, certificates | [`contact`] |
+//! | what looks wrong and is allowed | [`Warning`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
 //!
 //! Grids, heights, files, statistics and generators ([`surface`], [`io`]) are a crate of their own,
@@ -70,6 +73,10 @@
 //! * **Boundary**: the kernel says what surrounds the grid ([`Boundary`]). There is no default.
 //!
 //! # What a path costs
+//!
+//! A *kernel* gives the displacement of a node under a unit pressure on another, an *updater* solves with the matrix of
+//! the nodes in contact, from a *factor* of it or by iterations. *The paper* is X. Zhang, Y. Zhang, Z. Jin, Friction 8
+//! (2020) 970–981; `docs` is a folder of the repository.
 //!
 //! A Cholesky factor of n nodes in contact takes 4n² bytes and n³/3 floating-point operations at the speed of a matrix
 //! product; nodes out of contact cost little. When the rest of the path is cheaper with iterations, from some 6800

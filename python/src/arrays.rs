@@ -11,6 +11,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::one_of;
 use crate::errors::{Failure, Fallible, Number, Numbers};
 
 /// An array that was found to have numbers in it.
@@ -170,13 +171,11 @@ pub(crate) fn is_empty(found: &Found<'_>) -> bool {
 }
 
 /// Lengths along x and y \[m\]: two numbers, or one for both.
-#[derive(FromPyObject)]
 pub(crate) enum Lengths {
-    #[pyo3(transparent)]
-    Both((f64, f64)),
-    #[pyo3(transparent)]
     Same(f64),
+    Both([f64; 2]),
 }
+one_of!(Lengths, "a number or (x, y)", Same, Both);
 
 impl Lengths {
     /// The grid of an array \[row, column\] with these sides \[m\]; of square cells if there is one.
@@ -189,7 +188,7 @@ impl Lengths {
     /// Along x, and along y if it is given apart.
     pub(crate) fn x_and_y(&self) -> (f64, Option<f64>) {
         match *self {
-            Self::Both((x, y)) => (x, Some(y)),
+            Self::Both([x, y]) => (x, Some(y)),
             Self::Same(x) => (x, None),
         }
     }

@@ -4,8 +4,8 @@ use asperity::Boundary;
 use asperity::kernel::Layering;
 use asperity::patches::Connectivity;
 use asperity::surface::{Axis, Filter, Interpolation, Trend};
-use pyo3::FromPyObject;
 
+use crate::argument::one_of;
 use crate::errors::{Failure, Fallible};
 
 /// What a word stands for.
@@ -38,13 +38,11 @@ pub(crate) const LAYERINGS: [(&str, Layering); 5] = [
 ];
 
 /// Whether a map repeats with its sides, or the side along which it does.
-#[derive(FromPyObject)]
 pub(crate) enum Repeats {
-    #[pyo3(transparent)]
     Sides(bool),
-    #[pyo3(transparent)]
     Along(String),
 }
+one_of!(Repeats, "True, False, 'x' or 'y'", Sides, Along);
 
 impl Repeats {
     pub(crate) fn boundary(&self) -> Fallible<Boundary> {

@@ -10,6 +10,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::argument::one_of;
 use crate::arrays::{Found, Kind, column};
 use crate::choice::{BOUNDARIES, choose, word};
 use crate::compute::detached;
@@ -98,13 +99,16 @@ const SURROUNDINGS: [(&str, Surroundings); 5] = [
 ];
 
 /// A layer: Young's modulus, Poisson's ratio and thickness, or a name and the thickness.
-#[derive(FromPyObject)]
 enum LayerArgument {
-    #[pyo3(transparent)]
     Numbers((f64, f64, f64)),
-    #[pyo3(transparent)]
     Named((String, f64)),
 }
+one_of!(
+    LayerArgument,
+    "a layer (Young's modulus, Poisson's ratio, thickness) or (name, thickness)",
+    Numbers,
+    Named
+);
 
 /// A kernel on its grid.
 pub(crate) type Kernel = Box<dyn InfluenceKernel + Send + Sync>;

@@ -3,6 +3,7 @@
 //! Nothing is computed here. Each file has one topic, with a function `register` that adds its classes and functions.
 
 mod adhesion;
+mod argument;
 mod arrays;
 mod choice;
 mod compute;

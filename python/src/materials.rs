@@ -6,17 +6,16 @@ use asperity::{composite_modulus as composite, plane_strain_modulus as plane_str
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::one_of;
 use crate::errors::{Failure, Fallible};
 use crate::results::result;
 
 /// A body by its name, or by Young's modulus and Poisson's ratio.
-#[derive(FromPyObject)]
 pub(crate) enum Body {
-    #[pyo3(transparent)]
-    Numbers((f64, f64)),
-    #[pyo3(transparent)]
     Named(String),
+    Numbers((f64, f64)),
 }
+one_of!(Body, "(Young's modulus, Poisson's ratio) or the name of a material", Named, Numbers);
 
 impl Body {
     /// Young's modulus \[Pa\] and Poisson's ratio.

@@ -28,6 +28,8 @@ const SOFT_FOR_ONE: usize = 4;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to
 /// 1e-12 whatever the windows were, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
+/// The same of a state that has another one's number: another path is further off.
+const RECOGNISED: f64 = 1e-6;
 
 /// Why a branch has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -242,12 +244,7 @@ impl AdhesivePath {
         self.front = Front { nodes, approach, held: Vec::new() };
         self.body.follow(&self.front)?;
         let field = self.body.survey(&self.front, last.direction.sign())?;
-        let [[pressures, _], _] = field.sums();
-        // Of all pressures, whose signs differ, and of the law: rounding of a solution.
-        let size: f64 = field.pressure[0].iter().map(|p| p.abs()).sum();
-        let [found, unit] = [pressures, size].map(|sum| sum * self.grid().cell_area());
-        let error = (found - last.contact.load).abs();
-        if error.is_nan() || error > SAME_LOAD * unit {
+        if let Some(found) = self.other_load(&field, last.contact.load, SAME_LOAD) {
             return Err(Error::Inconsistent {
                 step: last.step,
                 quantity: "load",
@@ -262,6 +259,16 @@ impl AdhesivePath {
         self.last = Some(last);
         self.end = Some(AdhesiveEnd::Target);
         Ok(())
+    }
+
+    /// The load that the pressures of a field carry, if it is not this one but for a part of all forces.
+    fn other_load(&self, field: &Field, load: f64, part: f64) -> Option<f64> {
+        let [[pressures, _], _] = field.sums();
+        // Of all pressures, whose signs differ, and of the law: rounding of a solution.
+        let size: f64 = field.pressure[0].iter().map(|p| p.abs()).sum();
+        let [found, unit] = [pressures, size].map(|sum| sum * self.grid().cell_area());
+        let error = (found - load).abs();
+        (error.is_nan() || error > part * unit).then_some(found)
     }
 
     /// Where the path was after so many states.
@@ -280,17 +287,31 @@ impl AdhesivePath {
     ///
     /// # Errors
     ///
-    /// [`Error::StateNotReached`] for a state that this path has not had, or has gone back behind, and those of the
-    /// updater.
+    /// [`Error::StateNotReached`] for a state that this path has not had, or has gone back behind,
+    /// [`Error::NotOnPath`] for one of another path, and those of the updater.
     pub fn fields_at(&self, state: &AdhesiveState) -> Result<AdhesiveFields, Error> {
         let present = self.last.map_or(0, |last| last.step);
         if state.step == 0 || state.step > present {
             return Err(Error::StateNotReached { step: state.step, present });
         }
+        let ContactState { approach, load, .. } = state.contact;
+        let not_on_path = |quantity, value| {
+            let (step, expected) = (state.step, "that of the state");
+            Error::NotOnPath { step, load, approach, quantity, value, expected }
+        };
         let front = self.front_at(state.step);
+        let length = self.body.law.range() + self.body.problem.greatest_gap() + approach.abs();
+        let of_mark = self.gauge().0.reported_approach(front.approach, load);
+        let error = (of_mark - approach).abs();
+        if error.is_nan() || error > RECOGNISED * length {
+            return Err(not_on_path("approach", of_mark));
+        }
         let mut body = Body::new(Arc::clone(&self.body.problem), self.body.law, self.body.budget);
         body.follow(&front)?;
         let field = body.survey(&front, self.direction.sign())?;
+        if let Some(found) = self.other_load(&field, load, RECOGNISED) {
+            return Err(not_on_path("load", found));
+        }
         let (nx, ny) = self.grid().shape();
         let [[pressure, _], [gap, _]] = [field.pressure, field.gap];
         Ok(AdhesiveFields {

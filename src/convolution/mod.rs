@@ -69,7 +69,7 @@ pub(crate) use transforms::Parity;
 /// ```
 /// use asperity::convolution::Convolution;
 /// use asperity::{Boundary, Error, Grid, InfluenceKernel};
-/// use nalgebra::DMatrix;
+/// use asperity::nalgebra::DMatrix;
 ///
 /// /// A bed of independent springs: displacement in proportion to a node's own pressure.
 /// struct Winkler(Grid);

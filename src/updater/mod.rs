@@ -76,7 +76,7 @@ pub struct Left {
 /// use asperity::contact::ContactSequence;
 /// use asperity::updater::{self, LinearUpdater, Schur, Solution, WindowFactor};
 /// use asperity::{Boussinesq, Error, Grid, LoadingSolver, Problem, SelfAffine};
-/// use nalgebra::{DMatrix, DVector};
+/// use asperity::nalgebra::{DMatrix, DVector};
 ///
 /// struct Plain;
 ///

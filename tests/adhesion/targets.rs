@@ -228,6 +228,34 @@ fn no_adhesion_is_the_elastic_path() {
     }
 }
 
+/// A state of the same number on another path, and one of the same approach with another load.
+#[test]
+fn states_of_another_path_are_refused() {
+    for law in [0.0, 1e-3] {
+        let kernel = kernel();
+        let make = |height: f64| {
+            let height = Amplitude::RmsHeight(height);
+            let surface = SelfAffine::new(0.8, 0.5, 0.25, height, 5).unwrap();
+            AdhesivePath::builder(&surface, &kernel, Adhesion::work(law)).build().unwrap()
+        };
+        let (mut own, mut other) = (make(0.02), make(0.03));
+        let (states, foreign) = (run(&mut own), run(&mut other));
+        for step in [2, 20, 60] {
+            let state = states[step - 1];
+            assert!(own.fields_at(&state).is_ok(), "{law} {step}");
+            let mut altered = state;
+            altered.contact.load += 0.1 * states.last().unwrap().contact.load;
+            for wrong in [foreign[step - 1], altered] {
+                let refused = own.fields_at(&wrong);
+                assert!(
+                    matches!(refused, Err(Error::NotOnPath { .. })),
+                    "{law} {step}: {refused:?}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn what_is_refused() {
     let (surface, kernel) = (surface(), kernel());

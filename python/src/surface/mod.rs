@@ -14,6 +14,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::argument::one_of;
 use crate::arrays::{self, Lengths};
 use crate::choice;
 use crate::compute::detached;
@@ -145,12 +146,11 @@ impl Surface {
     }
 }
 
-/// A range of rows or columns: a slice, or first and behind the last.
-#[derive(FromPyObject)]
+/// A range of rows or columns: first and behind the last.
 enum Range {
-    #[pyo3(transparent)]
     Pair((usize, usize)),
 }
+one_of!(Range, "(first, behind the last)", Pair);
 
 #[pymethods]
 impl Surface {

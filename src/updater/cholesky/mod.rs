@@ -29,8 +29,6 @@ use factor::Factor;
 ///   substitution (n² flops each);
 /// * a node that touches has its row of L ready, `[F_jᵀ, …]`: the paper's lⁿ (eq. 16);
 /// * a solution costs one backward substitution (eq. 17).
-///
-/// [`timings`](Self::timings) says where the time went.
 #[derive(Debug, Clone)]
 pub struct RecursiveCholesky {
     factor: Factor,

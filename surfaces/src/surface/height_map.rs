@@ -13,10 +13,10 @@ use crate::{Error, Grid, Surface};
 ///
 /// ```
 /// use asperity_surfaces::{Error, Grid, Surface, surface::HeightMap};
-/// use nalgebra::dmatrix;
+/// use asperity_surfaces::nalgebra::DMatrix;
 ///
 /// # fn main() -> Result<(), Error> {
-/// let map = HeightMap::new(dmatrix![0.0, 1e-6, 0.0; 0.0, -1e-6, 0.0])?;
+/// let map = HeightMap::new(DMatrix::from_row_slice(2, 3, &[0.0, 1e-6, 0.0, 0.0, -1e-6, 0.0]))?;
 /// let grid = Grid::new(2, 3, 1e-3, 1e-3)?;
 /// assert_eq!(map.heights(&grid)?[(0, 1)], 1e-6);
 /// assert_eq!(map.mean_height(), 0.0);

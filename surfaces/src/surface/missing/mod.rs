@@ -47,10 +47,11 @@ pub fn count_missing(heights: &DMatrix<f64>) -> usize {
 ///
 /// ```
 /// use asperity_surfaces::surface::{count_missing, fill_missing};
-/// use nalgebra::dmatrix;
+/// use asperity_surfaces::nalgebra::DMatrix;
 ///
 /// # fn main() -> Result<(), asperity_surfaces::Error> {
-/// let holed = dmatrix![0.0, 1.0, 2.0; 1.0, f64::NAN, 3.0; 2.0, 3.0, 4.0];
+/// let heights = [0.0, 1.0, 2.0, 1.0, f64::NAN, 3.0, 2.0, 3.0, 4.0];
+/// let holed = DMatrix::from_row_slice(3, 3, &heights);
 /// assert_eq!(count_missing(&holed), 1);
 /// assert_eq!(fill_missing(holed)?[(1, 1)], 2.0);
 /// # Ok(())

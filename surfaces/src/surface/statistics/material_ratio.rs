@@ -10,7 +10,7 @@ const CORE: f64 = 0.4;
 ///
 /// ```
 /// use asperity_surfaces::surface::{HeightMap, MaterialRatio};
-/// use nalgebra::DMatrix;
+/// use asperity_surfaces::nalgebra::DMatrix;
 ///
 /// # fn main() -> Result<(), asperity_surfaces::Error> {
 /// let map = HeightMap::new(DMatrix::from_fn(10, 10, |ix, iy| (ix + 10 * iy) as f64))?;

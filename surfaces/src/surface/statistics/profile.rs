@@ -43,7 +43,7 @@ impl Topography {
     /// ```
     /// use asperity_surfaces::Grid;
     /// use asperity_surfaces::surface::Topography;
-    /// use nalgebra::DMatrix;
+    /// use asperity_surfaces::nalgebra::DMatrix;
     ///
     /// # fn main() -> Result<(), asperity_surfaces::Error> {
     /// // A wave of 0.1 mm on a bow.
