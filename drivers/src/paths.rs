@@ -203,7 +203,7 @@ impl<'a> Trial<'a> {
             };
             let steps = history.events().partition_point(|s| s.step <= state.step);
             let mut walk = Walk::new(&self.dense, self.grid, demands);
-            walk.skip(&history.events()[..steps])?;
+            walk.pass(&history.events()[..steps])?;
             match path.fields_at(&state) {
                 Ok(ContactFields { pressure, gap, plastic_depth, .. }) => {
                     let context =

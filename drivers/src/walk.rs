@@ -80,6 +80,24 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
+    /// Goes behind states without a check, but with what they leave to later ones: ties, and contacts whose matrix was
+    /// too ill-conditioned.
+    pub(crate) fn pass(&mut self, states: &[LoadingState]) -> Result<(), Violation> {
+        for state in states {
+            let before = self.last.and_then(|_| self.solved(state));
+            let node = self.take(state)?;
+            if let (Some((set, instant)), Some(node)) = (before, node) {
+                self.leave_open(state.event, node, (&set, &instant));
+            }
+            match self.solved(state) {
+                Some((set, _)) if self.dense.hardness().is_some() => self.norms = set.norms,
+                found => self.blind |= found.is_none(),
+            }
+            self.last = Some(*state);
+        }
+        Ok(())
+    }
+
     /// Goes behind states that were looked at before, without looking at them.
     pub(crate) fn skip(&mut self, states: &[LoadingState]) -> Result<(), Violation> {
         for state in states {
@@ -221,12 +239,10 @@ impl<'a> Walk<'a> {
             self.check_signs(set, instant)?;
             // Where no node has yielded, both errors are the same.
             if let Some(node) = node {
-                let size = instant.gap[node].abs();
+                self.leave_open(state.event, node, (set, instant));
                 let (what, value, allowed) = if state.event == ContactEvent::Yield {
                     let hardness = self.hardness(node);
                     let left = hardness - instant.pressure[node];
-                    let open = self.dense.self_influence() * left.abs();
-                    self.left_open = self.left_open.max(open);
                     let allowed = set.norms.inverse * instant.carried_error + TIE * hardness;
                     ("pressure missing where a node yields", left, allowed)
                 } else if set.contains(node) {
@@ -234,8 +250,7 @@ impl<'a> Walk<'a> {
                     ("pressure of the node that leaves", value, instant.pressure_error)
                 } else {
                     let allowed = instant.carried_error + TIE * instant.lengths;
-                    self.left_open = self.left_open.max(size);
-                    ("gap of the node that touches", size, allowed)
+                    ("gap of the node that touches", instant.gap[node].abs(), allowed)
                 };
                 self.tally.close(what, value, 0.0, allowed)?;
             }
@@ -264,6 +279,24 @@ impl<'a> Walk<'a> {
         }
         self.last = Some(*state);
         Ok(())
+    }
+
+    /// Keeps what an event leaves of the gap of its node, or of the pressure that is missing where it yields.
+    fn leave_open(
+        &mut self,
+        event: ContactEvent,
+        node: usize,
+        (set, instant): (&ContactSet<'_>, &Instant),
+    ) {
+        let open = match event {
+            ContactEvent::Yield => {
+                let left = self.hardness(node) - instant.pressure[node];
+                self.dense.self_influence() * left.abs()
+            }
+            _ if set.contains(node) => 0.0,
+            _ => instant.gap[node].abs(),
+        };
+        self.left_open = self.left_open.max(open);
     }
 
     /// The equations of the contact, solved at the approach of a state; `None` where nothing can be said.
