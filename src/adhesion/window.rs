@@ -13,8 +13,8 @@ use crate::kernel::Gauge;
 use crate::{Error, Grid};
 
 /// By how much a node may be beyond its law at the end of a window, in pressures relative to the stress, in gaps to the
-/// range: ten times the lag with which a node that is carried is put on its law, which others answer to. Of gaps there
-/// is rounding of the greatest length besides, which soft nodes near an instability amplify.
+/// range: ten times the lag with which a node that is carried is put on its law, or held at an end of it, which others
+/// answer to. Of gaps there is rounding of the greatest length besides. Soft nodes near an instability amplify both.
 const SLACK: f64 = 10.0 * LAG;
 const ROUNDING: f64 = 1e-12;
 /// A window that its end contradicts is tried again so often, with fewer events and more nodes.
@@ -127,7 +127,7 @@ pub(super) fn follow(
 fn beyond(body: &Body, front: &Front, field: &Field) -> Vec<(usize, f64)> {
     let law = &body.law;
     let length = body.problem.greatest_gap() + front.approach.abs();
-    let slack = SLACK + ROUNDING * length / (law.range() * body.least_pivot());
+    let slack = (SLACK + ROUNDING * length / law.range()) / body.least_pivot();
     let nodes = front.nodes.iter().enumerate().filter_map(|(node, &state)| {
         let value = excess(law, state, [field.pressure[0][node], field.gap[0][node]]);
         (value.is_nan() || value > slack).then_some((node, value))
