@@ -30,7 +30,7 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
     (
         &["unload"],
         "unloading needs no option where nothing yields: elastic contact without friction goes back through the same states; \
-         `asperity path` takes --unload with --hardness and with --work-of-adhesion",
+         `asperity path`, not `load`, takes --unload, with --hardness and with --work-of-adhesion",
     ),
 ];
 

@@ -57,6 +57,8 @@ pub(crate) const TIME: Dimension = Dimension {
         ("h", 3600.0),
         ("d", 86400.0),
         ("years", 31_557_600.0),
+        ("year", 31_557_600.0),
+        ("y", 31_557_600.0),
     ],
 };
 /// A work of adhesion.

@@ -136,8 +136,8 @@ pub(super) fn warnings(moment: &Moment, bodies: &[Body]) -> Vec<String> {
             if let Some(first) = first.filter(|first| first.state.contact.contact_nodes < FEW_NODES)
             {
                 warnings.push(format!(
-                    "the {} yields with {} in contact: below some {FEW_NODES} of them the load of first yield is that of the grid",
-                    material.as_deref().unwrap_or(body.name),
+                    "{} yields with {} in contact: below some {FEW_NODES} of them the load of first yield is that of the grid",
+                    material.clone().unwrap_or_else(|| format!("the {}", body.name)),
                     counted(first.state.contact.contact_nodes, "node")
                 ));
             }
