@@ -187,7 +187,7 @@ fn refusals() -> Done {
     is_refused(&short, &["is enough until t = ", "--resume path.npz", "--max-load"]);
     assert!(folder.join("short/creep.csv").exists());
     let beyond = output(&folder.0, &format!("creep path.npz {SERIES} --approach 1"))?;
-    is_refused(&beyond, &["from its beginning", "--max-approach"]);
+    is_refused(&beyond, &["from its beginning on", "--max-approach"]);
     let shares = output(&folder.0, "creep path.npz --prony 1,0.6 2,0.6 --load 1e-7")?;
     is_refused(&shares, &["sum of the shares", "1.2"]);
     fs::write(folder.join("bad.csv"), "time,load\n1,1\n0,1\n")?;

@@ -200,8 +200,8 @@ pub(crate) fn same_path(
         ];
         for (a, b, allowed) in pairs {
             match (a, b) {
-                // Of other elastic nodes.
-                (Some(_), Some(_)) if yields && !pending.is_empty() => {}
+                // Of other nodes, where these may come in another order.
+                (Some(_), Some(_)) if bounds.order > 0.0 && !pending.is_empty() => {}
                 (Some(a), Some(b)) if b.is_finite() => {
                     scalars.push(("stiffness", a, b, allowed * b));
                 }

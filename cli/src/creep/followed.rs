@@ -164,7 +164,7 @@ impl<'a> Followed<'a> {
             (_, ControlHistory::Load(_)) => "--max-area-fraction 1".to_string(),
         };
         let reached = match until {
-            0.0 => "the path ends below what this history needs at its beginning".to_string(),
+            0.0 => "the path ends below what this history needs, from its beginning on".to_string(),
             until => format!(
                 "the path is enough until t = {}, and not to {}",
                 units::time(until),
