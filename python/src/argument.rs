@@ -11,7 +11,6 @@ macro_rules! one_of {
             type Error = pyo3::PyErr;
 
             fn extract(given: pyo3::Borrowed<'a, 'py, pyo3::PyAny>) -> Result<Self, pyo3::PyErr> {
-                use pyo3::prelude::PyAnyMethods;
                 $(if let Ok(found) = given.extract() {
                     return Ok(Self::$variant(found));
                 })+

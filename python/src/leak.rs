@@ -10,8 +10,8 @@ use pyo3::types::PyDict;
 use crate::arrays::{Found, Kind, Lengths, column, rows};
 use crate::choice::{self, Repeats};
 use crate::compute::detached;
+use crate::elastic_path::ElasticPath;
 use crate::errors::Fallible;
-use crate::path::LoadingPath;
 use crate::results::result;
 use crate::state::State;
 use crate::warnings::warn_all;
@@ -114,7 +114,7 @@ impl Seal {
     fn leak<'py>(
         &self,
         py: Python<'py>,
-        path: PyRef<'py, LoadingPath>,
+        path: ElasticPath<'py>,
         state: Option<PyRef<'py, State>>,
         check: bool,
     ) -> Fallible<Bound<'py, PyAny>> {
@@ -180,7 +180,7 @@ impl Seal {
     fn curve<'py>(
         &self,
         py: Python<'py>,
-        path: PyRef<'py, LoadingPath>,
+        path: ElasticPath<'py>,
         states: usize,
         check: bool,
     ) -> Fallible<Bound<'py, PyAny>> {

@@ -8,6 +8,7 @@ mod arrays;
 mod choice;
 mod compute;
 mod creep;
+mod elastic_path;
 mod errors;
 mod fixed_load;
 mod given;

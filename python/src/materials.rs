@@ -67,7 +67,7 @@ fn named(name: &str) -> Fallible<&'static Material> {
 /// first : (float, float) or str
 ///     Young's modulus [Pa] and Poisson's ratio, or the name of one of `materials`.
 /// second : (float, float) or str, optional
-///     The other body; rigid unless it is given.
+///     The other body, or "rigid"; rigid unless it is given.
 ///
 /// Returns
 /// -------
@@ -82,11 +82,13 @@ fn named(name: &str) -> Fallible<&'static Material> {
 #[pyfunction]
 #[pyo3(signature = (first, second=None))]
 fn composite_modulus(first: Body, second: Option<Body>) -> Fallible<f64> {
-    let (e, nu) = first.numbers()?;
-    Ok(match second {
-        None => plane_strain(e, nu)?,
-        Some(second) => composite((e, nu), second.numbers()?)?,
-    })
+    match second {
+        Some(second) => modulus(&(first, second)),
+        None => {
+            let (e, nu) = first.numbers()?;
+            Ok(plane_strain(e, nu)?)
+        }
+    }
 }
 
 /// Typical values of materials at room temperature.

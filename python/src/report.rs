@@ -9,8 +9,8 @@ use asperity::io::write_whole;
 use asperity_report::{Report as Page, Source};
 use pyo3::prelude::*;
 
+use crate::elastic_path::ElasticPath;
 use crate::errors::Fallible;
-use crate::path::LoadingPath;
 
 /// Pixels of a page between other cells of a notebook.
 const HEIGHT: u32 = 900;
@@ -104,8 +104,8 @@ impl Report {
 #[pyo3(signature = (path, other=None, *, name="path", other_name="other path", folder=None))]
 fn report(
     py: Python<'_>,
-    path: PyRef<'_, LoadingPath>,
-    other: Option<PyRef<'_, LoadingPath>>,
+    path: ElasticPath<'_>,
+    other: Option<ElasticPath<'_>>,
     name: &str,
     other_name: &str,
     folder: Option<PathBuf>,

@@ -12,6 +12,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Found, Kind, Lengths, column, rows};
 use crate::choice::Repeats;
 use crate::compute::detached;
+use crate::elastic_path::ElasticPath;
 use crate::errors::{Failure, Fallible};
 use crate::path::LoadingPath;
 use crate::results::result;
@@ -57,7 +58,7 @@ pub(crate) struct Stress {
 #[pyo3(signature = (path, poissons_ratio=None, *, state=None, friction=0.0, angle=0.0))]
 fn stress(
     py: Python<'_>,
-    path: PyRef<'_, LoadingPath>,
+    path: ElasticPath<'_>,
     poissons_ratio: Option<f64>,
     state: Option<PyRef<'_, State>>,
     friction: f64,
@@ -124,7 +125,7 @@ fn stress_of(
 #[pyo3(signature = (path, yield_stress, poissons_ratio=None, *, friction=0.0, angle=0.0))]
 fn first_yield<'py>(
     py: Python<'py>,
-    path: PyRef<'py, LoadingPath>,
+    path: ElasticPath<'py>,
     yield_stress: f64,
     poissons_ratio: Option<f64>,
     friction: f64,
@@ -155,7 +156,7 @@ fn first_yield<'py>(
 #[pyo3(signature = (path, yield_stresses, poissons_ratio=None, *, friction=0.0, angle=0.0))]
 fn first_yields<'py>(
     py: Python<'py>,
-    path: PyRef<'py, LoadingPath>,
+    path: ElasticPath<'py>,
     yield_stresses: &Bound<'py, PyAny>,
     poissons_ratio: Option<f64>,
     friction: f64,

@@ -139,8 +139,12 @@ def test_sides_that_are_none(size: object) -> None:
 
 @pytest.mark.parametrize("size", ["1e-3", (1.0, 2.0, 3.0), [], object()])
 def test_sizes_of_another_kind(size: object) -> None:
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match=r"a number or \(x, y\) was expected, but this is"):
         asp.Surface(INTEGERS, size)
+
+
+def test_sides_as_a_list() -> None:
+    assert asp.Surface(INTEGERS, [1e-3, 2e-3]).size == (1e-3, 2e-3)
 
 
 def test_an_array_needs_a_size() -> None:

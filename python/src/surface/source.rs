@@ -101,6 +101,6 @@ fn of_topography(topography: &Bound<'_, PyAny>) -> Fallible<Surface> {
         Err(_) => None,
     };
     let found = found.transposed()?;
-    let size = Lengths::Both((x * metres, y * metres));
+    let size = Lengths::Both([x * metres, y * metres]);
     Ok(Surface { periodic, ..of_array(found, &size, metres)? })
 }
