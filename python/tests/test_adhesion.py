@@ -135,7 +135,7 @@ def test_what_is_refused(surface: asp.Surface, tmp_path: Path) -> None:
     with pytest.raises(errors.AsperityError) as behind:
         path.unload(load=1.0)
     assert behind.value.kind == "Behind" and behind.value.present == path.state.load  # type: ignore[union-attr]
-    with pytest.raises(TypeError):
+    with pytest.raises(errors.AsperityError, match="needs a LoadingPath"):
         asp.patches(path)  # type: ignore[arg-type]
     for follow in (asp.report, lambda path: asp.stress(path, 0.3)):
         with pytest.raises(errors.AsperityError, match="with adhesion"):
