@@ -230,6 +230,14 @@ impl Ties<'_> {
             let by_node = nodes[a.position].cmp(&nodes[b.position]);
             a.time.total_cmp(&b.time).then(by_node)
         });
+        // Where images yield apart, the mean time of their touches may lie behind the yield of one.
+        let yields_first = equal.iter().enumerate().any(|(k, (event, _))| {
+            event.kind == ContactEvent::Yield
+                && equal[k + 1..].iter().any(|(later, _)| later.position == event.position)
+        });
+        if yields_first {
+            return;
+        }
         for (place, (event, error)) in range.zip(equal) {
             (events[place], errors[place]) = (event, error);
         }
