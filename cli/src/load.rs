@@ -30,8 +30,8 @@ use crate::values::{FORCE, PRESSURE, bytes};
 /// The contact of a measured surface under given pressures or loads, each solved by itself
 ///
 /// Prints a table of the states, and writes load.csv and, for each state, a map named after it: contact_map_5MPa.png,
-/// or contact_map_500kPa.png for 0.5MPa. The model is that of `asperity path`: elastic up to the hardness if there is one, without friction and
-/// adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
+/// or contact_map_500kPa.png for 0.5MPa. The model is that of `asperity path`: elastic up to the hardness if there is
+/// one, without friction and adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File with heights, positive towards the half-space (`asperity formats` lists what is read): the rows of
