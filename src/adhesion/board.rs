@@ -88,14 +88,8 @@ pub(super) struct Beginning {
 
 impl Board {
     pub(super) fn new(begin: Beginning) -> Self {
-        let carried = begin.held.first().filter(|_| begin.is_carried);
-        let carried = carried.and_then(|&(node, _)| {
-            let place = begin.rows.iter().position(|row| row.node == node)?;
-            let Row { pressure, gap, .. } = begin.rows[place];
-            Some((place, begin.law.direction([pressure, gap], begin.sign)))
-        });
         let rates = begin.rates.iter().copied().chain(begin.sums.iter().map(|[_, rate]| *rate));
-        Self {
+        let mut board = Self {
             law: begin.law,
             along: rates.collect(),
             along_approach: None,
@@ -103,13 +97,23 @@ impl Board {
             answers: begin.answers,
             sums: begin.sums.map(|[value, _]| value),
             held: begin.held,
-            carried,
+            carried: None,
             sign: begin.sign,
             contact_nodes: begin.contact_nodes,
             other_soft: begin.other_soft,
             is_worn: false,
             changes: Vec::new(),
-        }
+        };
+        board.carried = board.first_held().filter(|_| begin.is_carried);
+        board
+    }
+
+    /// The row of the first node that is held, and which way its pull goes to its law.
+    fn first_held(&self) -> Option<(usize, f64)> {
+        let &(node, _) = self.held.first()?;
+        let place = self.rows.iter().position(|row| row.node == node)?;
+        let Row { pressure, gap, .. } = self.rows[place];
+        Some((place, self.law.direction([pressure, gap], self.sign)))
     }
 
     fn size(&self) -> usize {
@@ -333,10 +337,7 @@ impl Board {
 
     /// Makes the pull of the first node that is held the parameter.
     pub(super) fn carry_next(&mut self) {
-        let node = self.held.first().map(|&(node, _)| node);
-        if let Some(place) = self.rows.iter().position(|row| Some(row.node) == node) {
-            let Row { pressure, gap, .. } = self.rows[place];
-            let direction = self.law.direction([pressure, gap], self.sign);
+        if let Some((place, direction)) = self.first_held() {
             self.carried = Some((place, direction));
             let mut rates = self.answers.column(place);
             rates.iter_mut().for_each(|rate| *rate *= -direction);

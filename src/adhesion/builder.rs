@@ -18,7 +18,6 @@ use crate::{ContactGrowth, Error, InfluenceKernel, LoadingSolver, Problem, Surfa
 const FIELDS: usize = 24;
 
 /// The settings of an [`AdhesivePath`]; see [`AdhesivePath::builder`].
-#[allow(missing_debug_implementations)]
 #[must_use]
 pub struct AdhesiveBuilder<'a> {
     surface: &'a dyn Surface,
@@ -27,6 +26,18 @@ pub struct AdhesiveBuilder<'a> {
     targets: Vec<ContactTarget>,
     window_size: Option<usize>,
     memory_budget: Option<usize>,
+}
+
+impl std::fmt::Debug for AdhesiveBuilder<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("AdhesiveBuilder")
+            .field("grid", &self.kernel.grid())
+            .field("law", &self.law)
+            .field("targets", &self.targets)
+            .field("window_size", &self.window_size)
+            .field("memory_budget", &self.memory_budget)
+            .finish_non_exhaustive()
+    }
 }
 
 impl AdhesivePath {
