@@ -15,16 +15,16 @@ pub(crate) struct Sticking {
     /// Work of adhesion: the surfaces pull each other, and path.csv has the branch of pressing on, with loads below 0 at
     /// first, and with --unload that of pulling off; with it come the pull-off force and what the loop costs. Rubber on
     /// glass has 0.05 J/m² or more [default: nothing pulls]
-    #[arg(long, value_name = "J/M2", allow_negative_numbers = true, value_parser = SURFACE_ENERGY.not_negative(), help_heading = "Adhesion")]
+    #[arg(long, value_name = "J/M2", value_parser = SURFACE_ENERGY.not_negative(), help_heading = "Adhesion")]
     work_of_adhesion: Option<f64>,
 
     /// Gap at which the pull ends [default: the shortest that the cells resolve, which is the limit of JKR on this grid]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "work_of_adhesion", help_heading = "Adhesion")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), requires = "work_of_adhesion", help_heading = "Adhesion")]
     adhesion_range: Option<f64>,
 
     /// Greatest pull, in the law of Maugis; its outer border is a slope as steep as the cells resolve, or ends at
     /// --adhesion-range [default: the pull falls in proportion to the gap, from 2w over the range]
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive(), requires = "work_of_adhesion", help_heading = "Adhesion")]
+    #[arg(long, value_name = "PA", value_parser = PRESSURE.positive(), requires = "work_of_adhesion", help_heading = "Adhesion")]
     cohesive_stress: Option<f64>,
 }
 

@@ -13,20 +13,20 @@ use crate::values::{CONDUCTIVITY, LENGTH, RESISTIVITY};
 pub(crate) struct Conduct {
     /// Add the electrical conductance of the contact to tables and files: resistivities of both bodies, or of one if
     /// the other conducts perfectly
-    #[arg(long, value_name = "OHM_M", value_delimiter = ',', allow_negative_numbers = true, value_parser = RESISTIVITY.positive(), help_heading = "Joint")]
+    #[arg(long, value_name = "OHM_M", value_delimiter = ',', value_parser = RESISTIVITY.positive(), help_heading = "Joint")]
     resistivity: Vec<f64>,
 
     /// Add the thermal conductance of the contact to tables and files: thermal conductivities of both bodies in W/(m
     /// K), or of one if the other conducts perfectly
-    #[arg(long, value_name = "W_M_K", value_delimiter = ',', allow_negative_numbers = true, value_parser = CONDUCTIVITY.positive(), help_heading = "Joint")]
+    #[arg(long, value_name = "W_M_K", value_delimiter = ',', value_parser = CONDUCTIVITY.positive(), help_heading = "Joint")]
     conductivity: Vec<f64>,
 
     /// Thermal conductivity in W/(m K) of what fills the gap, in parallel to the contact: air 0.026
-    #[arg(long, value_name = "W_M_K", allow_negative_numbers = true, value_parser = CONDUCTIVITY.positive(), requires = "conductivity", help_heading = "Joint")]
+    #[arg(long, value_name = "W_M_K", value_parser = CONDUCTIVITY.positive(), requires = "conductivity", help_heading = "Joint")]
     gap_conductivity: Option<f64>,
 
     /// Temperature jump distance of a gas in the gap, the sum of both surfaces: air about 3.7e-7 [default: 0]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "gap_conductivity", help_heading = "Joint")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), requires = "gap_conductivity", help_heading = "Joint")]
     jump_distance: Option<f64>,
 }
 

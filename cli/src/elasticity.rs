@@ -20,7 +20,7 @@ use crate::values::PRESSURE;
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Elasticity {
     /// Composite modulus E*: 1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive(), help_heading = "Bodies")]
+    #[arg(long, value_name = "PA", value_parser = PRESSURE.positive(), help_heading = "Bodies")]
     e_star: Option<f64>,
 
     /// One body, in place of E*: a name (steel, aluminium, copper, brass, titanium, glass, pmma, ptfe, rubber, ...:
@@ -34,7 +34,7 @@ pub(crate) struct Elasticity {
 
     /// A layer of one body, in place of --material: Young's modulus, Poisson's ratio and thickness, 450GPa,0.25,5um, or
     /// a name and the thickness, gold,2um; may be given several times, from the surface downwards
-    #[arg(long, value_name = "E,NU,H|NAME,H", allow_negative_numbers = true, conflicts_with_all = ["e_star", "material"], requires = "base", help_heading = "Bodies")]
+    #[arg(long, value_name = "E,NU,H|NAME,H", conflicts_with_all = ["e_star", "material"], requires = "base", help_heading = "Bodies")]
     layer: Vec<LayerArgument>,
 
     /// What the layers are bonded to: rigid, or an elastic half-space

@@ -23,9 +23,9 @@ const FONT: i32 = 20;
 const MARGIN: Margin = Margin { left: 130, right: 200, top: 80, bottom: 100 };
 /// Values below the range.
 const BELOW: RGBColor = RGBColor(230, 0, 0);
-/// Nodes that have yielded, and those that are pulled.
+/// Nodes that have yielded, and those that are pulled or have no place on the scale.
 const YIELDED: RGBColor = RGBColor(240, 120, 0);
-const PULLED: RGBColor = RGBColor(196, 200, 206);
+const APART: RGBColor = RGBColor(196, 200, 206);
 
 struct Margin {
     left: i32,
@@ -41,7 +41,8 @@ pub enum Scale {
     Linear,
     /// In proportion to the value, the greatest bright: for heights.
     Relief,
-    /// In proportion to its logarithm, between positive ends; what lies below the range is as light as its end.
+    /// In proportion to its logarithm, between positive ends; what lies below the range is as light as its end, and 0
+    /// grey.
     Logarithmic,
 }
 
@@ -79,7 +80,7 @@ impl FieldMap<'_> {
         along: (&str, f64),
     ) -> Result<PathBuf, Failure> {
         let lowest = 0.5 * self.grid.dy() - self.grid.sides().1;
-        self.write_between(name, caption, [along, ("height", lowest)])
+        self.write_between(name, caption, [along, ("height above the surface", lowest)])
     }
 
     /// The same with names of the axes and the values at which they begin.
@@ -222,7 +223,11 @@ impl FieldMap<'_> {
         ];
         let top = bar.top - FONT;
         let marks = marks.into_iter().map(|mark| (mark, top));
-        let below = (("pulled", PULLED, has(f64::NEG_INFINITY)), bar.top + bar.height + 2 * FONT);
+        let apart = match self.scale {
+            Scale::Logarithmic => ("0", APART, has(0.0)),
+            Scale::Linear | Scale::Relief => ("pulled", APART, has(f64::NEG_INFINITY)),
+        };
+        let below = (apart, bar.top + bar.height + 2 * FONT);
         for ((text, colour, _), y) in marks.chain([below]).filter(|((.., is_there), _)| *is_there) {
             let at = (bar.left + bar.width, y);
             let pos = anchor(HPos::Right, VPos::Center);
@@ -249,8 +254,8 @@ impl FieldMap<'_> {
         if value == f64::INFINITY {
             return YIELDED;
         }
-        if value == f64::NEG_INFINITY {
-            return PULLED;
+        if value == f64::NEG_INFINITY || (value == 0.0 && self.scale == Scale::Logarithmic) {
+            return APART;
         }
         match colours.place(value) {
             Some(share) if greatest > least => self.shade(share),

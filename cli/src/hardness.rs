@@ -14,7 +14,7 @@ use crate::values;
 pub(crate) struct Hardness {
     /// Greatest pressure: cells yield there, and the surface stays deformed. A pressure, or a number of Brinell,
     /// Vickers or (of steel, 20 to 68) Rockwell: 2.5GPa, 250HB, 250HV, 60HRC [default: nothing yields]
-    #[arg(long, value_name = "PA|HB|HV|HRC", allow_negative_numbers = true, value_parser = values::hardness)]
+    #[arg(long, value_name = "PA|HB|HV|HRC", value_parser = values::hardness)]
     hardness: Option<f64>,
 
     /// Cells yield at a typical hardness of the --material, of the softer one of two: --hardness without a number

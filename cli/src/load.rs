@@ -61,13 +61,7 @@ pub(crate) struct Options {
     periodic: Option<Periodic>,
 
     /// Greatest error of the gaps, relative to the approach
-    #[arg(
-        long,
-        value_name = "T",
-        allow_negative_numbers = true,
-        default_value_t = 1e-8,
-        help_heading = "Solver"
-    )]
+    #[arg(long, value_name = "T", default_value_t = 1e-8, help_heading = "Solver")]
     tolerance: f64,
 
     /// Greatest memory in bytes, for example 2e9 [default: three quarters of the memory]
@@ -94,15 +88,15 @@ pub(crate) struct Options {
 struct Loads {
     /// Load over nominal area, load, or contact area: 5MPa,50MPa or 10N or 2mm2 or 10%; a bare number is a mean
     /// pressure in Pa
-    #[arg(long, value_name = "STATE,...", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "STATE,...", value_delimiter = ',')]
     at: Vec<At>,
 
     /// Load; may be given several times
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.any())]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.any())]
     load: Vec<f64>,
 
     /// Load over nominal area; may be given several times
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
+    #[arg(long, value_name = "PA", value_parser = PRESSURE.positive())]
     mean_pressure: Vec<f64>,
 }
 

@@ -33,6 +33,7 @@ mod stress;
 mod tips;
 mod values;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use asperity_cli::chart_format::{self, ChartFormat};
@@ -104,7 +105,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let parsed = Arguments::command().try_get_matches().and_then(|given| {
+    let words = with_negative_values(std::env::args_os());
+    let parsed = Arguments::command().try_get_matches_from(words).and_then(|given| {
         let arguments = Arguments::from_arg_matches(&given)?;
         Ok((given, arguments))
     });
@@ -145,6 +147,26 @@ fn main() -> ExitCode {
             ExitCode::from(failure.code())
         }
     }
+}
+
+/// The words of a command line, `--side -1mm` as `--side=-1mm`: a number is the value of the option before it.
+fn with_negative_values(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut kept: Vec<OsString> = Vec::new();
+    for word in words {
+        let is_negative = matches!(word.as_encoded_bytes(), [b'-', b'.' | b'0'..=b'9', ..]);
+        let awaits_value = |last: &&mut OsString| {
+            let last = last.as_encoded_bytes();
+            last.len() > 2 && last.starts_with(b"--") && !last.contains(&b'=')
+        };
+        match kept.last_mut().filter(|last| is_negative && awaits_value(last)) {
+            Some(option) => {
+                option.push("=");
+                option.push(word);
+            }
+            None => kept.push(word),
+        }
+    }
+    kept
 }
 
 /// The main job on a generated surface, and what to do next.

@@ -17,11 +17,11 @@ use crate::values::{LENGTH, layout, unit};
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Reading {
     /// Side of the surface along x, in place of that in the file
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive())]
     pub(crate) side: Option<f64>,
 
     /// Side along y [default: that of square cells]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "side", help_heading = "Reading the file")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), requires = "side", help_heading = "Reading the file")]
     pub(crate) side_y: Option<f64>,
 
     /// Unit of the heights, in place of that in the file: m, mm, um, nm, ...

@@ -59,12 +59,6 @@ fn killed_paths_go_on() {
         std::thread::sleep(Duration::from_secs_f64(share * time.as_secs_f64()));
         process.kill().unwrap();
         process.wait().unwrap();
-        // A picture that has its name is whole.
-        for picture in ["loading_curve.svg", "contact_map.png"] {
-            if let Ok(found) = fs::read(out.join(picture)) {
-                assert!(found == fs::read(whole.join(picture)).unwrap(), "{kill}");
-            }
-        }
         // A record is whole or not there, and a file of states has its name once it is whole.
         let again = if record.is_file() {
             resumed += 1;

@@ -82,6 +82,24 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// A negative number is a value, with a unit as well as without.
+#[test]
+fn negative_values_are_values() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("negative")?;
+    for (line, expected) in [
+        ("path --side -1mm", "invalid value '-1mm' for '--side <METRES>': must be positive"),
+        ("path --side -.5", "invalid value '-.5' for '--side <METRES>': must be positive"),
+        ("path --side=1 -1", "unexpected argument '-1'"),
+        ("path --side --nodes 8", "a value is required for '--side <METRES>'"),
+        ("path --unload -1mm", "unexpected value '-1mm' for '--unload'"),
+    ] {
+        let done = output(&folder.0, line)?;
+        assert_eq!(done.status.code(), Some(2), "{line}: {}", said(&done));
+        assert!(said(&done).contains(expected), "{line}: {}", said(&done));
+    }
+    Ok(())
+}
+
 /// Counts are integers wherever a program reads them.
 #[test]
 fn counts_are_integers() -> Result<(), Box<dyn Error>> {

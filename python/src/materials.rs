@@ -82,13 +82,8 @@ fn named(name: &str) -> Fallible<&'static Material> {
 #[pyfunction]
 #[pyo3(signature = (first, second=None))]
 fn composite_modulus(first: Body, second: Option<Body>) -> Fallible<f64> {
-    match second {
-        Some(second) => modulus(&(first, second)),
-        None => {
-            let (e, nu) = first.numbers()?;
-            Ok(plane_strain(e, nu)?)
-        }
-    }
+    let second = second.unwrap_or_else(|| Body::Named("rigid".to_string()));
+    modulus(&(first, second))
 }
 
 /// Typical values of materials at room temperature.

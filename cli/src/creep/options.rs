@@ -31,11 +31,11 @@ pub(crate) struct Options {
     pub(super) prony: Vec<(f64, f64)>,
 
     /// Load put on at t = 0 and held
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), conflicts_with_all = ["approach", "history"], required_unless_present_any = ["approach", "history"])]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), conflicts_with_all = ["approach", "history"], required_unless_present_any = ["approach", "history"])]
     pub(super) load: Option<f64>,
 
     /// Approach from first touch, taken at t = 0 and held: the load relaxes
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "history")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), conflicts_with = "history")]
     pub(super) approach: Option<f64>,
 
     /// Load or approach over time: a CSV file of two columns with the header `time,load` or `time,approach`, linear
@@ -44,11 +44,11 @@ pub(crate) struct Options {
     pub(super) history: Option<PathBuf>,
 
     /// Time in which --load or --approach is put on [default: at once]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = TIME.positive(), conflicts_with = "history")]
+    #[arg(long, value_name = "SECONDS", value_parser = TIME.positive(), conflicts_with = "history")]
     pub(super) ramp: Option<f64>,
 
     /// Time of the last state [default: the last line of --history, or 100 times the longest time of --prony]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = TIME.positive())]
+    #[arg(long, value_name = "SECONDS", value_parser = TIME.positive())]
     pub(super) time: Option<f64>,
 
     /// Least number of steps from one corner of the history to the next, and of lines in creep.csv
@@ -57,7 +57,7 @@ pub(crate) struct Options {
 
     /// Amplitude of the load cycles around --load whose lost energy is drawn against frequency [default: a fifth of
     /// --load]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), requires = "load")]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), requires = "load")]
     pub(super) cycle_amplitude: Option<f64>,
 
     /// Nodes that share only a corner belong to one patch too; channels pass through sides of cells either way

@@ -43,7 +43,7 @@ pub(crate) struct Options {
 
     /// Cut-off wavelength of the roughness of a profile, as 0.8mm: its parameters are Ra, Rz, ... then [default: Pa,
     /// Pz, ... of the primary profile]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive())]
     cutoff: Option<f64>,
 
     /// Print one JSON object with format, title, understood, nx, ny, side_x, side_y, missing (in the file), min, max,

@@ -12,20 +12,20 @@ use crate::values::{LENGTH, PRESSURE, VISCOSITY};
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Fluid {
     /// Viscosity of the fluid in Pa s: water 1e-3, air 1.8e-5, oils 1e-2 to 1
-    #[arg(long, value_name = "PA_S", allow_negative_numbers = true, value_parser = VISCOSITY.positive())]
+    #[arg(long, value_name = "PA_S", value_parser = VISCOSITY.positive())]
     viscosity: f64,
 
     /// Pressure drop of the fluid from edge to edge
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
+    #[arg(long, value_name = "PA", value_parser = PRESSURE.positive())]
     pub(super) pressure_drop: f64,
 
     /// The fluid is an ideal gas, which leaves at this absolute pressure: leak rates are volumes there, and its
     /// throughput is told too
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
+    #[arg(long, value_name = "PA", value_parser = PRESSURE.positive())]
     gas_outlet_pressure: Option<f64>,
 
     /// Gap through which nothing flows any more, and through narrower ones [default: only contact closes]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive())]
     least_gap: Option<f64>,
 
     /// Direction in which the fluid is pressed

@@ -44,7 +44,7 @@ pub(crate) struct Options {
 
     /// Load of a state of which fluid pressure and flux are drawn; may be given several times [default: half of
     /// the load at which the last channel closes, or the last state]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive())]
     load: Vec<f64>,
 
     /// Number of states at which the leak rate along the path is computed; 0 for none but those of --load

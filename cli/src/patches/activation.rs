@@ -23,10 +23,12 @@ pub(super) fn draw(record: &LoadingRecord, name: &Path) -> Result<PathBuf, Failu
         return Err(Failure::request("there is no map of activation: no node touched under load"));
     };
     let touched = loads.iter().filter(|load| !load.is_nan()).count();
+    // The first node touches at no load: it is as light as the end of the scale.
+    let values = loads.map(|load| if load.is_nan() { load } else { load.max(least) });
     FieldMap {
         grid: &grid,
         length_unit: "m",
-        values: &loads,
+        values: &values,
         range: (least, greatest),
         scale: Scale::Logarithmic,
         contours: &rounds(least, greatest),

@@ -42,11 +42,11 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Load of the state that is described [default: the last state]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), conflicts_with = "at_area_fraction")]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), conflicts_with = "at_area_fraction")]
     at_load: Option<f64>,
 
     /// Contact area over nominal area of the state that is described
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction)]
+    #[arg(long, value_name = "F", value_parser = fraction)]
     at_area_fraction: Option<f64>,
 
     /// Nodes that share only a corner belong to one patch too; channels pass through sides of cells either way

@@ -32,7 +32,7 @@ pub(super) struct Joint {
 
     /// Write conductance.csv, with bounds for a surface that has more roughness than the grid, of at most this height
     /// from valley to peak
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive())]
     unresolved_roughness: Option<f64>,
 
     /// Write the laws of the interface for finite elements, per nominal area: pressure over overclosure (what the mean
@@ -42,16 +42,16 @@ pub(super) struct Joint {
     fe_table: Option<Program>,
 
     /// Greatest relative error of linear interpolation in that table
-    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = positive, default_value_t = 0.01, requires = "fe_table")]
+    #[arg(long, value_name = "E", value_parser = positive, default_value_t = 0.01, requires = "fe_table")]
     fe_error: f64,
 
     /// Coefficient of friction for that table
-    #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = positive, requires = "fe_table")]
+    #[arg(long, value_name = "MU", value_parser = positive, requires = "fe_table")]
     friction: Option<f64>,
 
     /// Tangential over normal compliance, E*/G* [default: of --material and --against; (2 - ν)/(2 - 2ν) for one of
     /// them]
-    #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, value_parser = positive, requires = "friction")]
+    #[arg(long, value_name = "KAPPA", value_parser = positive, requires = "friction")]
     compliance_ratio: Option<f64>,
 }
 

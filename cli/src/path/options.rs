@@ -66,7 +66,7 @@ pub(crate) struct Options {
 
     /// Move that surface by so many nodes along x and y, as it faces the other; it has to repeat there, and what leaves
     /// at one edge comes in at the opposite one
-    #[arg(long, value_name = "IX,IY", requires = "against_surface", allow_hyphen_values = true, value_parser = Shift::parse, help_heading = "Bodies")]
+    #[arg(long, value_name = "IX,IY", requires = "against_surface", value_parser = Shift::parse, help_heading = "Bodies")]
     pub(super) against_shift: Option<Shift>,
 
     #[command(flatten)]
@@ -90,7 +90,7 @@ pub(crate) struct Options {
     /// States of which table, maps (contact_map_5MPa.png) and --fields are: a load over nominal area, a load, or a
     /// contact area, as in 5MPa,50MPa or 10N or 2mm2 or 10%. A bare number is a mean pressure in Pa. Without another
     /// end the path ends at the last of them
-    #[arg(long, value_name = "STATE,...", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "STATE,...", value_delimiter = ',')]
     pub(super) at: Vec<At>,
 
     #[command(flatten)]
@@ -163,23 +163,23 @@ pub(crate) struct Options {
 #[derive(Debug, Clone, Args)]
 struct Ends {
     /// End the path at exactly this load over nominal area
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive(), conflicts_with = "max_load")]
+    #[arg(long, value_name = "PA", value_parser = PRESSURE.positive(), conflicts_with = "max_load")]
     mean_pressure: Option<f64>,
 
     /// End the path at exactly this load
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), help_heading = "Where the path ends")]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), help_heading = "Where the path ends")]
     max_load: Option<f64>,
 
     /// End the path at exactly this approach
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), help_heading = "Where the path ends")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), help_heading = "Where the path ends")]
     max_approach: Option<f64>,
 
     /// End the path at exactly this mean gap
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), help_heading = "Where the path ends")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), help_heading = "Where the path ends")]
     min_mean_gap: Option<f64>,
 
     /// End the path at this contact area over nominal area [default: 0.1 if no other end is given]
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction, help_heading = "Where the path ends")]
+    #[arg(long, value_name = "F", value_parser = fraction, help_heading = "Where the path ends")]
     max_area_fraction: Option<f64>,
 }
 

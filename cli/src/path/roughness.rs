@@ -18,27 +18,27 @@ pub(super) struct Roughness {
     pub(super) seed: Option<u64>,
 
     /// Root mean square height [default: 50 µm, unless --rms-gradient is given]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with_all = ["surface", "rms_gradient"])]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), conflicts_with_all = ["surface", "rms_gradient"])]
     sq: Option<f64>,
 
     /// Root mean square gradient, in place of --sq
-    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
+    #[arg(long, value_name = "G", value_parser = positive, conflicts_with = "surface")]
     rms_gradient: Option<f64>,
 
     /// Hurst exponent [default: 0.8]
-    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = fraction, conflicts_with = "surface")]
+    #[arg(long, value_name = "H", value_parser = fraction, conflicts_with = "surface")]
     pub(super) hurst: Option<f64>,
 
     /// Roll-off: the wavelength above which the spectrum is flat [default: 2.5 mm]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), conflicts_with = "surface")]
     pub(super) rolloff: Option<f64>,
 
     /// Shortest wavelength [default: eight cells, and without --rolloff not less than 78.125 µm]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), conflicts_with = "surface")]
     pub(super) short_cutoff: Option<f64>,
 
     /// Waves are so many times as long along x as they are along y; the other lengths are those along y [default: 1]
-    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
+    #[arg(long, value_name = "RATIO", value_parser = positive, conflicts_with = "surface")]
     pub(super) anisotropy: Option<f64>,
 }
 

@@ -36,8 +36,9 @@ pub(super) fn draw(joint: &Joint, directory: &Path) -> Result<Vec<PathBuf>, Fail
         _ => f64::NAN,
     });
     let work = DMatrix::from_fn(zones.nrows(), zones.ncols(), |ix, iy| match zones[(ix, iy)] {
-        SlipZone::Open => f64::NAN,
-        _ => 4.0 * slipped[(ix, iy)] * limit[(ix, iy)].max(0.0),
+        SlipZone::Slip => 4.0 * slipped[(ix, iy)] * limit[(ix, iy)].max(0.0),
+        SlipZone::Stick => 0.0,
+        _ => f64::NAN,
     });
     let grid = joint.record.grid();
     let map = |values, scale, range, label| FieldMap {

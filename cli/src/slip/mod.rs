@@ -42,19 +42,19 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Coefficient of friction
-    #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "MU", value_parser = positive)]
     friction: f64,
 
     /// Load that presses the joint [default: that of the last state]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive())]
     load: Option<f64>,
 
     /// Tangential load T, and amplitude of the cycle [default: half of what friction bears]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive())]
     amplitude: Option<f64>,
 
     /// Ratio of the tangential to the normal compliance of the bodies, E*/G*: (2 - ν)/(2 (1 - ν)) of one material
-    #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "KAPPA", value_parser = positive)]
     compliance_ratio: Option<f64>,
 
     /// One body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3) [default: both

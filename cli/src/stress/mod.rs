@@ -42,11 +42,11 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Load of the state whose stresses are computed [default: the last state]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive())]
     load: Option<f64>,
 
     /// Poisson's ratio of the body [default: both bodies of the record, if it knows them; layers it knows]
-    #[arg(long, value_name = "NU", allow_negative_numbers = true, value_parser = poisson)]
+    #[arg(long, value_name = "NU", value_parser = poisson)]
     poisson: Option<f64>,
 
     /// The body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3)
@@ -59,24 +59,24 @@ pub(crate) struct Options {
 
     /// Yield stress of the body, of layers one for all or one for each from the uppermost to the base: the load at which
     /// von Mises' stress in each material reaches it is looked for along the path
-    #[arg(long, value_name = "PA,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = PRESSURE.positive())]
+    #[arg(long, value_name = "PA,...", value_delimiter = ',', value_parser = PRESSURE.positive())]
     yield_stress: Vec<f64>,
 
     /// Yield stress of the other body
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
+    #[arg(long, value_name = "PA", value_parser = PRESSURE.positive())]
     against_yield_stress: Option<f64>,
 
     /// Coefficient of friction of a contact that slides: tractions of so many times the pressure
-    #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = not_negative, default_value_t = 0.0)]
+    #[arg(long, value_name = "MU", value_parser = not_negative, default_value_t = 0.0)]
     friction: f64,
 
     /// Direction of sliding in degrees from x towards y: that in which the other body moves over this one
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = ANGLE.any(), default_value_t = 0.0)]
+    #[arg(long, value_name = "DEGREES", value_parser = ANGLE.any(), default_value_t = 0.0)]
     angle: f64,
 
     /// Depth at which stresses are computed; may be given several times [default: from the surface to the size of the
     /// largest patch, and around the greatest stress]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.not_negative())]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.not_negative())]
     depth: Vec<f64>,
 
     /// Write stress.vti, which ParaView opens: the stress tensor and its measures at so many depths, as deep as the
