@@ -1,4 +1,4 @@
-//! How nodes answer to what is given of them, pivot by pivot.
+//! Pressures or gaps of nodes as functions of what is given of each, with a pivot where that changes.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -7,17 +7,17 @@ use crate::parallel::{self, vectorized};
 
 /// Pivots that are subtracted from the whole matrix at a time.
 const BLOCK: usize = 32;
-/// Columns that a thread changes at a time, and rows from which waking one pays.
+/// Columns that a thread changes at a time.
 const TILE: usize = 144;
+/// Nodes from which waking threads pays.
 const PARALLEL: usize = 400;
 
 /// The matrix T of how each of some nodes answers to what is given of the others, with two more rows, of sums.
 ///
-/// Of every node one of two quantities is given and the other answers. [Exchanging](Self::pivot) both is a pivot:
-/// `T_ij`,
-/// `i, j ≠ s`, loses `T_is T_sj / T_ss`, which is a column times a row. These are kept, and subtracted from all of the
-/// matrix a block at a time. Rows follow from columns: T is symmetric but for a sign where one of the two answers with
-/// its pressure and the other does not.
+/// Of every node one of two quantities is given and the other answers. [Exchanging](Self::pivot) the two of a node s is
+/// a pivot: `T_ij`, `i, j ≠ s`, loses `T_is T_sj / T_ss`, a column times a row. Columns and rows are kept, and
+/// subtracted from the matrix a block at a time. A row follows from its column: T is symmetric but for the sign between
+/// a node that answers with its pressure and one that does not.
 #[derive(Debug, Clone)]
 pub(super) struct Answers {
     size: usize,
@@ -47,7 +47,7 @@ impl Answers {
         columns.zip(self.rows.chunks_exact(self.size.max(1)))
     }
 
-    /// How one node answers to another.
+    /// `T_ij`: how the node of a row answers to what is given of that of a column.
     pub(super) fn entry(&self, row: usize, column: usize) -> f64 {
         let products: f64 = self.pivots().map(|(c, r)| c[row] * r[column]).sum();
         self.matrix[row + self.height() * column] - products
@@ -99,7 +99,7 @@ impl Answers {
             other[place] = 0.0;
             other.iter_mut().zip(&column).for_each(|(value, c)| *value -= factor * c);
         }
-        // What was there of its row and its column is in the new ones.
+        // The new row and column replace the old ones, in the matrix and in the pivots that are still to be subtracted.
         self.matrix[height * place..height * (place + 1)].fill(0.0);
         self.matrix[place..].iter_mut().step_by(height).take(size).for_each(|value| *value = 0.0);
         for (values, count) in [(&mut self.columns, height), (&mut self.rows, size)] {

@@ -272,7 +272,7 @@ impl Board {
         self.change(place, NodeState::Contact);
     }
 
-    /// Lets the next thing happen to a row.
+    /// Carries out the event that comes next to a row.
     pub(super) fn happen(&mut self, place: usize) {
         let closes = self.closes(place);
         let stress = self.law.stress();
@@ -302,13 +302,13 @@ impl Board {
         }
     }
 
-    /// Whether what happens next to a row takes others that are soft and not watched: they have to be held.
+    /// Whether other soft nodes have to be held for what happens next to a row, and some soft nodes are not watched.
     pub(super) fn lacks_others(&self, place: usize) -> bool {
         let is_stable = || self.entry(place, place) * self.compliance() > LEAST_PIVOT;
         self.rows[place].state == NodeState::Contact && self.other_soft > 0 && !is_stable()
     }
 
-    /// Opens a gap. Where others would not be stable then, the traction of those that it would change most is held
+    /// Lets a node part. Where soft nodes would not be stable then, those whose traction it would change most are held
     /// first.
     fn part(&mut self, place: usize) {
         // The pivot is the pressure that a gap there makes, and has to be positive.
@@ -476,12 +476,12 @@ impl Left {
         Some(Self { distance, rate, unit: range })
     }
 
-    /// Whether no more than a part of the unit is left to it at a time.
+    /// Whether the event has come at a time, but for a part of the unit.
     pub(super) fn is_by(&self, time: f64, part: f64) -> bool {
         self.distance - time * self.rate <= part * self.unit
     }
 
-    /// When.
+    /// How long it is until then.
     pub(super) fn time(&self) -> f64 {
         (self.distance / self.rate).max(0.0)
     }

@@ -80,7 +80,8 @@ impl AdhesiveBranch {
         self.read(|state| [state.contact.load, state.contact.approach], load)
     }
 
-    /// The second quantity where the first has a value, the first time; nothing is in between the two ends of a jump.
+    /// The second quantity where the first has a value, the first time. Between the two ends of a jump there is no
+    /// state.
     fn read(&self, quantities: impl Fn(&AdhesiveState) -> [f64; 2], at: f64) -> Option<f64> {
         if let Some([_, other]) = self.states.first().map(&quantities).filter(|[x, _]| *x == at) {
             return Some(other);

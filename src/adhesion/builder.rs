@@ -119,8 +119,9 @@ impl AdhesiveBuilder<'_> {
         let (range, mean_gap) = (law.range(), problem.mean_gap());
         let apart = ContactState::new(&problem.grid(), 0, -range, 0.0, mean_gap + range);
         targets.check_ahead(&apart, Direction::Loading)?;
-        let plain = (law.work() == 0.0).then(|| self.plain(&targets, budget)).transpose()?;
+        let plain = (law.work() == 0.0).then(|| self.plain(&targets, left)).transpose()?;
         let body = Body::new(Arc::new(problem), law, left);
-        Ok(AdhesivePath::new((body, self.law), targets, (self.window_size, plain)))
+        let window_size = self.window_size.map(|size| size.min(grid.nodes()));
+        Ok(AdhesivePath::new((body, self.law), targets, (window_size, plain)))
     }
 }

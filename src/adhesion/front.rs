@@ -82,7 +82,8 @@ pub(super) struct Body {
     watched: Watched,
     /// What has joined last, until something else happens.
     joined: Option<Joined>,
-    /// What each node makes of the sums of pressures and of gaps on this contact, if it is known.
+    /// How the sums of pressures and of gaps change with each node on this contact, if it is known: see
+    /// [`sums_by_node`](Self::sums_by_node).
     sums: Option<[Vec<f64>; 2]>,
     /// The least pivot of M over 1/k: gaps of soft nodes are known so many times less exactly than others.
     least_pivot: f64,
@@ -100,14 +101,15 @@ struct Watched {
 #[derive(Debug)]
 struct Joined {
     nodes: usize,
-    /// Of the nodes that did not join, in their order: columns of a matrix whose products with themselves the others
-    /// took.
+    /// R, a column for each node that joined and a row for each watched node that did not: the matrix of these lost
+    /// R Rᵀ.
     columns: Vec<f64>,
 }
 
-/// One node stays watched without need for so many that are needed: all columns are moved to leave it out.
+/// Nodes that are needed no more stay watched as long as there is at most one of them for so many that are needed: to
+/// leave any out, all columns are moved.
 const NEEDED_FOR_ONE: usize = 4;
-/// What a solution leaves in gaps that are known, relative to the range and the greatest length.
+/// How far a solution may be from gaps that are known, relative to the sum of range, greatest initial gap and approach.
 const RESIDUAL: f64 = 1e-8;
 
 impl Body {
@@ -177,7 +179,7 @@ impl Body {
             self.updater.truncate(&self.problem, &self.contact)?;
             self.watched.schur.add_gram(1.0, &joined.columns);
         }
-        // What else there may be: nodes that have left.
+        // Nodes that have left join again.
         self.follow(front)
     }
 
@@ -216,7 +218,7 @@ impl Body {
         Ok(())
     }
 
-    /// Lets nodes leave the contact, which are watched from then on if they were.
+    /// Lets nodes leave the contact. If all of them were watched there, they stay watched, behind the others.
     fn leave(&mut self, left: &[Left]) -> Result<(), Error> {
         let places = self.watched.places(self.problem.initial_gap().len());
         left.iter().try_for_each(|left| self.contact.remove(left.node).map(|_| ()))?;
@@ -245,7 +247,8 @@ impl Body {
 
     fn check_budget(&self, contact: usize, watched: usize) -> Result<(), Error> {
         let needed = self.updater.bytes(contact, watched);
-        // The matrix twice, that of the soft nodes with its factor, and the columns of a window.
+        // Three times a matrix of these nodes and its factor: the matrix itself and a copy, that of the soft nodes and
+        // its factor, and the columns of a window.
         let needed = needed.saturating_add(WindowFactor::bytes(watched).saturating_mul(3));
         if needed > self.budget {
             let (budget, nodes_that_fit) = (self.budget, self.contact.len());
@@ -320,8 +323,8 @@ impl Body {
         Ok(self.soft_factor.insert(factor))
     }
 
-    /// What some nodes, in ascending order, answer to each other and what sums of pressures and of gaps do, with all
-    /// soft nodes on their slope. `known` are rows of this front that nothing has followed since.
+    /// How some nodes, in ascending order, and the sums of pressures and of gaps answer to what is given of these
+    /// nodes, with all soft nodes on their slope. `known` are rows that were made of this front before.
     pub(super) fn rows(
         &mut self,
         front: &Front,
@@ -383,8 +386,8 @@ impl Body {
         Ok((answers, Rows { nodes, half, signs: signs.collect() }))
     }
 
-    /// Sums of the squares of the pressures of soft nodes that are no rows, for each of some lists of what is given of
-    /// the rows, and what the approach makes of these pressures by itself in so long.
+    /// Sums of the squared pressures of the soft nodes that are no rows, at each of some instants: how far the approach
+    /// has gone, which changes these pressures by itself, and what is given of the rows then.
     pub(super) fn squares(
         &self,
         rows: &Rows,
@@ -411,8 +414,8 @@ impl Body {
         lists.collect()
     }
 
-    /// Solves on the contact for two right-hand sides over the grid, of which only the values there count: what is left
-    /// in the contact of `C_II x = −b`.
+    /// Solves `C_II x = −b` for two right-hand sides b over the grid, of which only the values in contact count; x is 0
+    /// elsewhere.
     fn solve(&mut self, right: [&[f64]; 2]) -> Result<[Vec<f64>; 2], Error> {
         let order = self.contact.order();
         let mut solved: Vec<[f64; 2]> =
@@ -507,8 +510,8 @@ impl Body {
         Ok(field)
     }
 
-    /// Pressures and gaps behind a window that nothing has followed yet: of its rows they are known, and contact and
-    /// soft nodes answer as before it. No rates.
+    /// Pressures and gaps at the end of a window, before the factor follows: those of its rows are given, and contact
+    /// and soft nodes are still those of its beginning. No rates.
     pub(super) fn preview(
         &mut self,
         front: &Front,
@@ -571,7 +574,7 @@ impl Body {
         Ok(())
     }
 
-    /// Pressures of the soft nodes where these are all gaps without them and without those of the contact.
+    /// Pressures of the soft nodes, from the gaps of all nodes without pressures on these and on the contact.
     fn soft_pressures(&mut self, base: &[Vec<f64>; 2]) -> Result<[Vec<f64>; 2], Error> {
         self.factor_soft()?;
         let mut gaps =
@@ -590,8 +593,8 @@ impl Body {
         Ok(self.factor_soft()?.solve(gaps))
     }
 
-    /// What a unit of pressure at each node out of contact, or of gap at each in contact, makes of the sums of
-    /// pressures and of gaps, the others in contact answering and no node soft.
+    /// How the sums of pressures and of gaps change with a unit of pressure at each node out of contact, or of gap at
+    /// each in contact, while the others in contact answer and no node is soft.
     fn sums_by_node(&mut self) -> Result<[Vec<f64>; 2], Error> {
         let nodes = self.problem.initial_gap().len();
         let minus = [vec![-1.0; nodes], self.problem.row_sums().iter().map(|s| -s).collect()];

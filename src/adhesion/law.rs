@@ -194,8 +194,8 @@ impl CohesiveLaw {
         self.slope() * self.compliance
     }
 
-    /// Slope times compliance beyond which the mesh makes loops, over that of this law: cells that are so many times as
-    /// long make none. Below 1 there is a [warning](crate::Warning::SteepLaw).
+    /// How many times as long the cells may be before the mesh makes loops of its own: 0.5 over the
+    /// [resolution](Self::resolution). Below 1 there is a [warning](crate::Warning::SteepLaw).
     #[must_use]
     pub fn cell_margin(&self) -> f64 {
         WARNED / self.resolution()
@@ -209,7 +209,7 @@ impl CohesiveLaw {
     }
 
     /// Tabor's number `μ = σ₀ (9R / (2π w E*²))^⅓ / 1.157` of a sphere of a radius R \[m\] and the modulus E* \[Pa\],
-    /// after the cohesive stress: above 3 contact is nearly that of JKR, below 0.3 nearly that of DMT.
+    /// from the cohesive stress: above 3 contact is nearly that of JKR, below 0.3 nearly that of DMT.
     #[must_use]
     pub fn tabor_parameter(&self, radius: f64, e_star: f64) -> f64 {
         let cube = 9.0 * radius / (2.0 * std::f64::consts::PI * self.work() * e_star * e_star);
@@ -222,8 +222,9 @@ impl CohesiveLaw {
         (self.slope() * (self.range - gap)).clamp(0.0, self.stress)
     }
 
-    /// Which way a pull that is held goes to the law: 1 where it grows and −1 where it falls. It goes with the branch, of
-    /// this sign, unless what happened meanwhile has left it beyond the law: a node that has parted while others close.
+    /// Which way a pull that is held goes to the law: 1 where it grows and −1 where it falls. It goes with the branch,
+    /// of this sign, unless what happened meanwhile has left it beyond the law: a node that has parted while others
+    /// close.
     pub(super) fn direction(&self, [pressure, gap]: [f64; 2], sign: f64) -> f64 {
         let lag = sign * (self.pull(gap) + pressure);
         if lag < -BEYOND * self.stress { -sign } else { sign }

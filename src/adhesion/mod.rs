@@ -52,9 +52,10 @@
 //! and as many columns as nodes are on the slope of the law; paths without one are not offered. Events are followed in
 //! windows, as on other paths. The matrix of the soft nodes is kept from window to window, with the columns of the
 //! factor that it is made of; a window has the matrix of the nodes to which something happens next, which all soft
-//! nodes answer to. A solution tells before anything follows whether something happens to others first, and another one
-//! checks the end. Nodes go back and forth here and jumps have another parameter, the pull of a node, so that windows
-//! keep the inverse of their matrix and not its factor. `docs/theory.md` has the derivation.
+//! nodes answer to. Before the factor follows a window, a solution shows whether something would have happened to other
+//! nodes first; afterwards another one checks the end. Nodes go back and forth here and jumps have another parameter,
+//! the pull of a node, so that windows keep the inverse of their matrix and not its factor. `docs/theory.md` has the
+//! derivation.
 
 mod answers;
 mod board;

@@ -21,14 +21,14 @@ use crate::kernel::Gauge;
 use crate::tied_events::TiedEvents;
 use crate::{Error, Grid, Problem};
 
-/// Nodes that are watched: so many, or one for so many soft ones. On 128 × 128 nodes with up to 628 soft ones 128 and
-/// 300 are as fast, and 600 take 1.4 times as long.
+/// Nodes that are watched by default: so many, or a quarter of the soft ones if that is more. On 128 × 128 nodes with
+/// up to 628 soft ones 128 and 300 are as fast, and 600 take 1.4 times as long.
 const WATCHED: usize = 64;
 const SOFT_FOR_ONE: usize = 4;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to
 /// 1e-12 whatever the windows were, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
-/// The same of a state that has another one's number: another path is further off.
+/// The same of a state whose fields are asked for, and of its approach: one of another path is further off.
 const RECOGNISED: f64 = 1e-6;
 
 /// Why a branch has ended.
@@ -261,10 +261,11 @@ impl AdhesivePath {
         Ok(())
     }
 
-    /// The load that the pressures of a field carry, if it is not this one but for a part of all forces.
+    /// The load that the pressures of a field carry, if it differs from `load` by more than a part of the sum of all
+    /// forces.
     fn other_load(&self, field: &Field, load: f64, part: f64) -> Option<f64> {
         let [[pressures, _], _] = field.sums();
-        // Of all pressures, whose signs differ, and of the law: rounding of a solution.
+        // Pressures differ in sign: rounding goes with the sum of their absolute values.
         let size: f64 = field.pressure[0].iter().map(|p| p.abs()).sum();
         let [found, unit] = [pressures, size].map(|sum| sum * self.grid().cell_area());
         let error = (found - load).abs();
@@ -282,8 +283,8 @@ impl AdhesivePath {
         Front { nodes, approach, held: Vec::new() }
     }
 
-    /// Pressures, gaps and nodes on their law at a state of this path. The present state costs a solution, others a
-    /// factor as well: n³/3 flops for n nodes in contact.
+    /// Pressures, gaps and nodes on their law at a state of this path, the present one or an earlier one. Each call
+    /// makes a factor of its contact: n³/3 flops for n nodes.
     ///
     /// # Errors
     ///
@@ -373,7 +374,7 @@ impl AdhesivePath {
         let is_apart = moment.contact_nodes == 0 && moment.pulled == [0, 0];
         let has_distant_point = self.body.problem.table().gauge().is_none();
         let [[pressures, pressure_rate], [gaps, gap_rate]] = moment.sums;
-        // By identity and not by arithmetic.
+        // Exactly 0, where sums would leave rounding.
         let [pressures, pressure_rate] =
             if is_apart { [0.0; 2] } else { [pressures, pressure_rate] };
         let is_full = moment.contact_nodes == self.grid().nodes();
@@ -384,8 +385,8 @@ impl AdhesivePath {
         let Totals { work, dissipated } = moment.totals;
         let elastic = work - dissipated - adhesive_energy;
         let approach = gauge.0.reported_approach(moment.approach, load);
-        // Per unit of approach, whichever way that goes.
-        let stiffness = area * pressure_rate * self.direction.sign();
+        // Per unit of approach, whichever way that goes; and 0 rather than −0.
+        let stiffness = area * pressure_rate * self.direction.sign() + 0.0;
         let interfacial = -area * pressure_rate / (gap_rate / nodes);
         let contact = ContactState {
             contact_stiffness: Some(stiffness).filter(|_| has_distant_point),
@@ -408,7 +409,9 @@ impl AdhesivePath {
             work: gauge.0.reported_energy(work, load),
         };
         if event == AdhesiveEvent::Limit {
-            self.targets.place(&mut state.contact);
+            let pull = area * self.body.law.stress() * (soft_nodes + cohesive_nodes) as f64;
+            let length = self.body.problem.greatest_gap() + self.body.law.range();
+            self.targets.place(&mut state.contact, [pull + load.abs(), length + approach.abs()]);
         }
         self.queue.push_back(state);
     }
@@ -527,7 +530,7 @@ impl AdhesivePath {
     }
 }
 
-/// What the gauge of a periodic kernel makes of work.
+/// The gauge of a periodic kernel, with the way back from work about the mean planes.
 pub(super) struct GaugeOfPath(Gauge);
 
 impl GaugeOfPath {

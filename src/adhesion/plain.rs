@@ -1,5 +1,7 @@
 //! Without adhesion, w = 0: the states of the elastic path, there and back.
 
+use std::cmp::Ordering;
+
 use super::state::{AdhesiveEvent, Direction};
 use crate::contact::{ContactState, ContactTarget};
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingPath, LoadingState};
@@ -41,7 +43,7 @@ impl Plain {
         self.is_at_end = false;
     }
 
-    /// Goes to where so many nodes are in contact, of `most` that were before.
+    /// Goes to where `now` nodes are in contact, of a path on which `most` were in contact before.
     pub(super) fn skip_to(&mut self, now: usize, most: usize) -> Result<(), Error> {
         while self.touches.len() < most && self.touch()? {}
         self.now = now.min(self.touches.len());
@@ -66,7 +68,7 @@ impl Plain {
 
     /// Lets the path come to one touch more, if there is one.
     fn touch(&mut self) -> Result<bool, Error> {
-        // What it was to end at at first is forgotten.
+        // The targets of the first branch no longer count.
         if self.path.end().is_some() && self.touches.len() < self.path.grid().nodes() {
             self.path.continue_to(ContactTarget::AreaFraction(1.0))?;
         }
@@ -82,7 +84,7 @@ impl Plain {
     fn press(&mut self) -> Result<Option<Happened>, Error> {
         if self.targets.is_none() {
             let Some(state) = self.path.next().transpose()? else {
-                // An area has no state of its own.
+                // A path that ends at an area has no state there but the last touch.
                 self.is_at_end = self.path.end() == Some(LoadingEnd::AreaFraction);
                 return Ok(None);
             };
@@ -95,7 +97,7 @@ impl Plain {
             return self.end_behind();
         }
         let next = self.touches[self.now].contact;
-        if let Some(limit) = self.limit(|target, grid| is_beyond(&next, target, grid, 1.0))? {
+        if let Some(limit) = self.limit(&next, 1.0)? {
             return Ok(Some(limit));
         }
         let state = self.touches[self.now];
@@ -103,10 +105,27 @@ impl Plain {
         Ok(Some((AdhesiveEvent::Touch, state.node, state.contact)))
     }
 
-    /// Where all touch that can: the first target, if the path comes there.
+    /// Once no further node touches: all areas are reached, and other targets in the order of their loads.
     fn end_behind(&mut self) -> Result<Option<Happened>, Error> {
-        let target = self.targets.iter().flatten().next().copied();
-        let Some(target) = target else { return Ok(None) };
+        let targets = || self.targets.iter().flatten();
+        let last = self.touches.last().copied();
+        let Some(last) = last.filter(|_| targets().next().is_some()) else { return Ok(None) };
+        if targets().any(|target| matches!(target, ContactTarget::AreaFraction(_))) {
+            self.is_at_end = true;
+            return Ok(None);
+        }
+        let states = targets().filter_map(|&target| {
+            let state = match target {
+                ContactTarget::Approach(approach) => last.contact.at_approach(approach),
+                ContactTarget::MeanGap(gap) => last.contact.at_mean_gap(gap),
+                ContactTarget::Load(load) => last.contact.at_load(load),
+                _ => None,
+            };
+            Some((target, state?))
+        });
+        let Some((target, _)) = states.min_by(|(_, a), (_, b)| in_order(a, b, 1.0)) else {
+            return Ok(None);
+        };
         self.path.continue_to(target)?;
         let state = self.path.next().transpose()?;
         self.is_at_end = state.is_some();
@@ -116,14 +135,12 @@ impl Plain {
     fn release(&mut self) -> Result<Option<Happened>, Error> {
         let Some(last) = self.now.checked_sub(1) else { return Ok(None) };
         let state = self.touches[last];
-        let is_there =
-            |target: &ContactTarget, grid: &Grid| is_beyond(&state.contact, target, grid, -1.0);
-        if let Some(limit) = self.limit(is_there)? {
+        if let Some(limit) = self.limit(&state.contact, -1.0)? {
             return Ok(Some(limit));
         }
         self.now = last;
-        // Its pressure is 0 there: all is as at its touch, but that it does not count, and the stiffnesses are those
-        // without it.
+        // It parts where it touched, with a pressure of 0: the state is the one of its touch, without this node among
+        // those in contact, and with the stiffnesses before it touched.
         let grid = self.path.grid();
         let ContactState { approach, load, mean_gap, energy, .. } = state.contact;
         let before = last.checked_sub(1).map(|before| self.touches[before].contact);
@@ -136,21 +153,28 @@ impl Plain {
         Ok(Some((AdhesiveEvent::Part, state.node, contact)))
     }
 
-    /// The state of the first target for which that holds, with which the branch ends.
-    fn limit(
-        &mut self,
-        holds: impl Fn(&ContactTarget, &Grid) -> bool,
-    ) -> Result<Option<Happened>, Error> {
+    /// Ends the branch at the first target on the way to a state, 1 or −1, if there is one.
+    fn limit(&mut self, next: &ContactState, way: f64) -> Result<Option<Happened>, Error> {
         let grid = self.path.grid();
         let targets = self.targets.iter().flatten();
-        let Some(target) = targets.copied().find(|target| holds(target, &grid)) else {
+        let passed: Vec<ContactTarget> =
+            targets.copied().filter(|target| is_beyond(next, target, &grid, way)).collect();
+        if passed.is_empty() {
             return Ok(None);
-        };
+        }
         self.is_at_end = true;
         let history: History = self.touches.iter().copied().collect();
-        let state = history.at(target)?;
-        Ok(Some((AdhesiveEvent::Limit, state.node, state.contact)))
+        let states = passed.into_iter().map(|target| history.at(target));
+        let states = states.collect::<Result<Vec<LoadingState>, Error>>()?;
+        let first = states.into_iter().min_by(|a, b| in_order(&a.contact, &b.contact, way));
+        Ok(first.map(|state| (AdhesiveEvent::Limit, state.node, state.contact)))
     }
+}
+
+/// Which of two states of one path comes first on the way of a branch, 1 or −1.
+fn in_order(a: &ContactState, b: &ContactState, way: f64) -> Ordering {
+    let order = a.load.total_cmp(&b.load).then(a.approach.total_cmp(&b.approach));
+    if way > 0.0 { order } else { order.reverse() }
 }
 
 /// Whether a target lies before a state on the way of a branch, 1 or −1.
@@ -162,7 +186,7 @@ fn is_beyond(state: &ContactState, target: &ContactTarget, grid: &Grid, way: f64
         ContactTarget::MeanGap(gap) => way * (gap - state.mean_gap) > 0.0,
         ContactTarget::AreaFraction(fraction) => grid.nodes_in(fraction).is_ok_and(|nodes| {
             let (nodes, contact) = (nodes as f64, state.contact_nodes as f64);
-            // Of the last node that leaves there is to be nothing.
+            // On the way down the end is where the last of these nodes touched: its pressure is 0 there.
             if way > 0.0 { contact > nodes } else { contact <= nodes }
         }),
     }

@@ -24,7 +24,7 @@ pub(super) struct Soft {
     pub(super) least_pivot: f64,
 }
 
-/// What columns of soft nodes become in front of the factor.
+/// `L⁻¹ B` for some columns B of the soft nodes, with M = L Lᵀ.
 #[derive(Debug)]
 pub(super) struct Half {
     /// Row by row.
@@ -84,7 +84,7 @@ impl Soft {
         Half { values, width }
     }
 
-    /// M⁻¹ times a combination of columns, so many, for each of some lists of factors, one after the other.
+    /// `M⁻¹ B x` for the first `columns` columns of B and each of some lists x of factors, one after the other.
     pub(super) fn combine(&self, half: &Half, columns: usize, factors: &[f64]) -> Mat<f64> {
         let (size, lists) = (self.len(), factors.len() / columns.max(1));
         let mut combined = Mat::zeros(size, lists);
@@ -107,7 +107,7 @@ impl Soft {
 }
 
 impl Half {
-    /// Some of these columns, and some of others, in an order.
+    /// Columns of these, `Ok`, and of `others`, `Err`, in the order given.
     pub(super) fn joined(&self, others: &Self, columns: &[Result<usize, usize>]) -> Self {
         let rows = self.values.len() / self.width.max(1);
         let mut values = Vec::with_capacity(rows * columns.len());
@@ -120,7 +120,7 @@ impl Half {
         Self { values, width: columns.len() }
     }
 
-    /// Products of all columns with each other, b_iᵀ M⁻¹ b_j for what the columns were of.
+    /// `Bᵀ M⁻¹ B`, the products of all columns with each other.
     pub(super) fn gram(&self) -> Option<Schur> {
         let mut gram = Schur::default();
         gram.resize(self.width).ok()?;

@@ -22,13 +22,14 @@ pub(super) struct Measured {
     pub(super) approach: f64,
     pub(super) load: [f64; 2],
     pub(super) mean_gap: [f64; 2],
-    /// A stiffness that rates of loads are rounding to \[N/m\].
+    /// Rates of the load far below this stiffness are rounding \[N/m\].
     pub(super) stiffness: f64,
     /// Whether all nodes touch: mean planes of a periodic half-space do not approach any more then.
     pub(super) is_full: bool,
 }
 
-/// Rates below this part of those of a free surface are rounding.
+/// Rates below this part of their unit are rounding: of lengths 1, the rate of a free surface, and of loads
+/// [`Measured::stiffness`].
 const LEAST_RATE: f64 = 1e-11;
 
 impl Targets {
@@ -100,7 +101,7 @@ impl Targets {
         let stands = is_full && gauge.displacement(1.0) > 0.0;
         let times = self.targets.iter().map(|target| {
             let (left, rate, unit) = match *target {
-                // Whether it rises or falls.
+                // The load may rise or fall on either branch.
                 ContactTarget::Load(to) => {
                     ((to - load).abs(), (to - load).signum() * load_rate, stiffness)
                 }
@@ -137,8 +138,8 @@ impl Targets {
         direction == Direction::Unloading && self.nodes.is_some_and(|nodes| contact_nodes <= nodes)
     }
 
-    /// Whether a state is beyond a target: behind a jump, in which all but the load goes the way of the branch, or once
-    /// unloading has come down to an area.
+    /// Whether a state is beyond a target behind a jump, or unloading has come down to an area. Loads do not count: in
+    /// a jump they go against the branch.
     pub(super) fn is_past(&self, state: &ContactState, direction: Direction) -> bool {
         let is_beyond = |target: &ContactTarget| match *target {
             ContactTarget::Load(_) | ContactTarget::MeanPressure(_) => false,
@@ -152,18 +153,19 @@ impl Targets {
         self.is_reached(state.contact_nodes, direction) || self.targets.iter().any(is_beyond)
     }
 
-    /// Gives a state at a target the very value that was asked for.
-    pub(super) fn place(&self, state: &mut ContactState) {
+    /// Gives a state at a target the very value that was asked for; loads are differences of forces as large as this,
+    /// and approaches and gaps of lengths.
+    pub(super) fn place(&self, state: &mut ContactState, [force, length]: [f64; 2]) {
         let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= 1e-12 * unit;
         for target in &self.targets {
             match *target {
-                ContactTarget::Load(load) if is_near(load, state.load, load.abs()) => {
-                    state.load = load
+                ContactTarget::Load(load) if is_near(load, state.load, force) => {
+                    state.load = load;
                 }
-                ContactTarget::Approach(to) if is_near(to, state.approach, to.abs()) => {
+                ContactTarget::Approach(to) if is_near(to, state.approach, length) => {
                     state.approach = to;
                 }
-                ContactTarget::MeanGap(gap) if is_near(gap, state.mean_gap, gap.abs()) => {
+                ContactTarget::MeanGap(gap) if is_near(gap, state.mean_gap, length) => {
                     state.mean_gap = gap;
                 }
                 _ => {}

@@ -57,6 +57,30 @@ impl Trace {
             each(place, counts)?;
             done = changes;
         }
+        if done < self.changes.len() {
+            return Err(AdhesionError::WrongChanges { step: self.marks.len() + 1 }.into());
+        }
         Ok(states)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_belong_to_states() {
+        let touch = |node| Change { node, from: NodeState::Open, to: NodeState::Contact };
+        let trace = |changes: &[Change]| Trace { changes: changes.to_vec(), marks: vec![(1, 0.5)] };
+        let nodes = trace(&[touch(1)]).follow(2, |_, _| Ok(()));
+        assert_eq!(nodes.ok(), Some(vec![NodeState::Open, NodeState::Contact]));
+        for (changes, step) in [(&[][..], 1), (&[touch(2)], 1), (&[touch(1), touch(0)], 2)] {
+            match trace(changes).follow(2, |_, _| Ok(())) {
+                Err(Error::Adhesion(AdhesionError::WrongChanges { step: found })) => {
+                    assert_eq!(found, step);
+                }
+                other => panic!("{other:?}"),
+            }
+        }
     }
 }

@@ -17,11 +17,11 @@ use crate::{Error, Grid};
 /// answer to. Of gaps there is rounding of the greatest length besides. Soft nodes near an instability amplify both.
 const SLACK: f64 = 10.0 * LAG;
 const ROUNDING: f64 = 1e-12;
-/// A window that its end contradicts is tried again so often, with fewer events and more nodes.
+/// How often a window is tried, with more nodes or with fewer events each time.
 const TRIES: usize = 60;
-/// Nodes that are watched beside all soft ones.
+/// Other nodes that are watched in a window of all soft ones.
 const ALONE: usize = 64;
-/// A window is opened so often for nodes that it lacks before it is played with fewer events.
+/// How often a window is opened again for nodes that it lacks, before it is played with fewer events instead.
 const REOPENED: usize = 3;
 
 /// What a window needs to know of its path.
@@ -49,8 +49,8 @@ pub(super) struct Played {
 }
 
 /// Follows events until something may happen to a node that is not watched, until a jump begins or the pull of its next
-/// node is carried, or to a target; `None` if nothing happens any more. What the end contradicts is tried again with
-/// the nodes that do, and with fewer events.
+/// node is carried, or to a target; `None` if nothing happens any more. A window that its end contradicts is tried
+/// again: the nodes that are beyond their law are watched as well, and fewer events follow.
 pub(super) fn follow(
     body: &mut Body,
     front: &Front,
@@ -155,7 +155,7 @@ enum Outcome {
     Led(Front),
     /// Something happens to these nodes, which are not watched.
     Lacks(Vec<usize>),
-    /// What happens first takes all soft nodes.
+    /// The first event needs all soft nodes to be watched.
     LacksSoft,
 }
 
@@ -178,20 +178,20 @@ struct Play<'a> {
     events: usize,
     totals: Totals,
     moments: Vec<(AdhesiveEvent, usize, Moment, usize)>,
-    /// When each of them was, and what was given of the rows then beside what was at the beginning.
+    /// For each moment its time, and [what was given](Self::given) of the rows then.
     given: Vec<(f64, Vec<f64>)>,
     jump: Option<usize>,
     is_at_limit: bool,
     has_moved: bool,
-    /// Whether what happens next takes soft nodes that are not watched.
+    /// Whether the next event needs soft nodes that are not watched.
     lacks_others: bool,
     /// How often it was played again with fewer events.
     shortened: usize,
 }
 
 impl<'a> Play<'a> {
-    /// Watches all nodes that are pulled with σ₀ or held, those of `also`, and of the others so many that something
-    /// happens to first.
+    /// Watches all nodes that are pulled with σ₀ or held, those of `also`, and `size` others, to which something
+    /// happens first; all soft nodes if `size` is `usize::MAX`.
     fn open(
         body: &mut Body,
         front: &Front,
@@ -313,7 +313,7 @@ impl<'a> Play<'a> {
         self.moments.push((event, node, moment, changes));
     }
 
-    /// What is given of the rows beside what was at the beginning.
+    /// By how much the given quantity of each row has changed since the beginning.
     fn given(&self) -> Vec<f64> {
         let slope = self.board.law().slope();
         let rows = self.begun.iter().zip(&self.board.rows);
@@ -325,13 +325,13 @@ impl<'a> Play<'a> {
         given.collect()
     }
 
-    /// Notes that at the moment that comes next.
+    /// Notes it for the moment that is pushed next.
     fn note(&mut self) {
         self.given.push((self.time, self.given()));
     }
 
-    /// Plays so many events at most, as far as nothing happens to other nodes before; or says which these are, if it
-    /// may.
+    /// Plays `most` events at most, fewer if something would happen to other nodes before; or returns these nodes, if
+    /// the window may grow.
     fn play_out(
         &mut self,
         body: &mut Body,
@@ -350,7 +350,7 @@ impl<'a> Play<'a> {
             if self.events == 0 {
                 return Ok(Outcome::Led(ended));
             }
-            // What the carried row is given has its part in the rates along its pull.
+            // Along the pull of a row, soft nodes change by what is given of that row and by nothing else.
             let alone = if self.parameter == Parameter::Approach { self.time } else { 0.0 };
             let rows = self.board.rows.iter().map(|row| (row.node, [row.pressure, row.gap]));
             let rows: Vec<_> = rows.collect();
@@ -367,14 +367,15 @@ impl<'a> Play<'a> {
             if self.is_least(most) {
                 return Ok(Outcome::Led(ended));
             }
-            // Gaps fall faster and faster on loading: a line comes too early.
+            // On loading gaps fall faster and faster: a straight line from the beginning to the end is beyond the law
+            // before the gap is.
             let crossings = wrong.iter().map(|&(node, after)| {
                 let line = [field.pressure[0][node], field.gap[0][node]];
                 let before = excess(&body.law, front.nodes[node], line).min(0.0);
                 self.time * before / (before - after)
             });
             let first = crossings.fold(f64::INFINITY, f64::min);
-            // The second time that is not good enough.
+            // If that time was not early enough, half of the events.
             most = if until.is_finite() { self.events / 2 } else { self.events - 1 };
             most = most.max(1);
             until = until.min(first);
@@ -382,8 +383,8 @@ impl<'a> Play<'a> {
         }
     }
 
-    /// Whether there are no fewer events, where so many at most were asked for: behind the last one a node that is
-    /// carried may be found to be on its law, which counts as one more.
+    /// Whether the window cannot have fewer events. Where one was asked for there may be two: behind it a carried node
+    /// may be found on its law, which counts as well.
     fn is_least(&self, most: usize) -> bool {
         self.events <= 1 || most <= 1
     }
@@ -520,8 +521,8 @@ impl<'a> Play<'a> {
         !is_few && !self.board.is_worn
     }
 
-    /// Whether there have been so many events, and the next one does not come at once. What happens at one instant does
-    /// so in one window: behind a solution rounding grows from node to node.
+    /// Whether there have been `most` events and the next one does not come at once. Events of one instant belong in
+    /// one window: with a solution between them rounding would grow from node to node.
     fn is_enough(&self, most: usize, next: Option<(f64, usize)>) -> bool {
         self.events >= most && !next.is_some_and(|(_, place)| self.board.is_due(place))
     }

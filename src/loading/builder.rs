@@ -144,8 +144,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     }
 
     /// Whether the updater is given up for [`ConjugateGradient`] once that is cheaper for the rest of the path, or
-    /// where the updater does not fit into the memory budget: see [`Handover`], for which it is so unless this says
-    /// otherwise. Other updaters stay.
+    /// where the updater does not fit into the memory budget. By default [`Handover`] is, and no other updater.
     pub fn hand_over(mut self, may_end: bool) -> Self {
         self.settings.hand_over = Some(may_end);
         self
@@ -157,10 +156,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         self
     }
 
-    /// How many nodes to watch at a time. By default as many as make an event cheapest; states do not
-    /// depend on it, except by rounding. With 1 every node costs one convolution and one row of the factor,
-    /// as in the paper. Without a factor it is eight at least, to tell them apart; a kernel of
-    /// [`ContactGrowth::Unknown`] is followed one event at a time as long as there is a factor.
+    /// How many nodes to watch at a time. By default as many as make an event cheapest; states do not depend on it,
+    /// except by rounding. With 1 every node costs one convolution and one row of the factor, as in the paper. Without
+    /// a factor it is eight at least, to tell them apart.
     pub fn window_size(mut self, nodes: usize) -> Self {
         self.settings.window_size = Some(nodes);
         self
@@ -214,7 +212,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     ///
     /// Contact must be known to grow ([`ContactGrowth`]). An updater needs two more verbs for it,
     /// [`watch_both`](LinearUpdater::watch_both) and [`solve_for`](LinearUpdater::solve_for); iterations
-    /// ([`ConjugateGradient`]) serve it as well, and take over from a factor as on elastic paths. That factor holds
+    /// ([`ConjugateGradient`]) serve it as well, and take over from a factor as on elastic paths. The factor then holds
     /// elastic nodes only.
     ///
     /// [`ContactEvent::Yield`]: super::ContactEvent::Yield

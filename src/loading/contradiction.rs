@@ -4,12 +4,12 @@ use super::run::LoadingRun;
 use crate::Problem;
 use crate::contact::ContactSequence;
 
-/// By how much a solution may contradict what contact that grows does.
+/// How far a solution may be from what contact that grows does, before it contradicts that.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slack {
     /// Overlap \[m\].
     pub(super) gap: f64,
-    /// What a tension, and a pressure beyond the hardness, would displace alone \[m\].
+    /// Tension, and pressure beyond the hardness, times what a unit pressure displaces \[m\].
     pub(super) tension: f64,
     pub(super) excess: f64,
     /// Rates of pressures, relative to the greatest, and of plastic depths.
@@ -17,7 +17,7 @@ pub(super) struct Slack {
 }
 
 impl Slack {
-    /// By whatever.
+    /// Without bounds.
     pub(super) const ANY: Self = Self {
         gap: f64::INFINITY,
         tension: f64::INFINITY,
@@ -26,8 +26,9 @@ impl Slack {
     };
 }
 
-/// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns
-/// how much earlier the first was not yet, as far as the rates tell: not after 0.
+/// What at the end of a window contradicts contact that grows: overlap, tension, a pressure beyond the hardness, or a
+/// plastic depth that is negative or falls. Returns the time, from the end on, at which the first of these began by its
+/// rate: not after 0, and −∞ where no rate tells; `None` if there is none.
 pub(super) fn contradiction(
     run: &LoadingRun,
     (problem, contact, yielded): (&Problem, &ContactSequence, &[usize]),
@@ -46,7 +47,7 @@ pub(super) fn contradiction(
         if !has_yielded(node) {
             return (line.gap < -length).then(|| before(line.gap, line.closing));
         }
-        // Plastic depth neither is negative nor falls.
+        // A plastic depth is not negative and does not fall.
         let recovers = line.gap > length || line.closing < -slack.rate;
         recovers.then_some(f64::NEG_INFINITY)
     });

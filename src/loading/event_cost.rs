@@ -54,7 +54,7 @@ pub(super) struct Rest {
     /// Nodes that a factor holds now, and at the end.
     factor: [usize; 2],
     events: f64,
-    /// Where nodes may leave: what part of the events do.
+    /// Where nodes may leave: the part of the events that are releases.
     releases: Option<f64>,
 }
 

@@ -1,5 +1,5 @@
-//! Events in windows with a factor: nodes that touch, with a hardness elastic nodes that yield, and where nodes may leave
-//! all events before one does.
+//! Events in windows with a factor: nodes that touch, with a hardness elastic nodes that yield as well, and where nodes
+//! may leave the touches before one does.
 
 mod leaving;
 
@@ -32,8 +32,8 @@ use leaving::AtStart;
 /// Where contact only grows and nobody yields, that time is a lower bound if the kernel is convex. Otherwise a window
 /// is solved at its end and checked there: gaps only close and pressures only grow, so that what is right at the end
 /// was right throughout. Where the end contradicts events, fewer are played. Nodes that yield leave the factor, which
-/// cannot be undone: a window with such events is solved with the factor as it was. Where nodes may leave, the window is
-/// looked at in between as well, and [ends before](leaving) one does.
+/// cannot be undone: a window with such events is solved with the factor as it was. Where nodes may leave, a window is
+/// checked in between as well, and [ends before](leaving) one does.
 #[derive(Debug)]
 pub(super) struct Exact {
     growth: ContactGrowth,
@@ -50,7 +50,7 @@ pub(super) struct Exact {
 struct Survey {
     /// When the first node would touch or yield.
     first: f64,
-    /// From when on nodes would yield that are not ranked: all others would have touched before.
+    /// When the first node that is not ranked would yield: after all ranked nodes out of contact have touched.
     beyond: f64,
     rates: Rates,
 }
@@ -60,8 +60,8 @@ impl Exact {
         Self { growth, size, window: Window::default(), ranking: Ranking::new(), is_behind: false }
     }
 
-    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if
-    /// nothing can happen to any node. Returns what went wrong after them. The log of the factor has all windows so far.
+    /// Computes a window of states with at most `most_nodes` in contact, which must be more than there are; none if
+    /// nothing can happen to any node. Returns what went wrong after them. The log has all windows so far.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
@@ -109,20 +109,22 @@ impl Exact {
         Ok(queued.err().or(failure))
     }
 
-    /// The present solution, if the factor would find another one, but for rounding.
+    /// The present solution where it comes from the factor before the last yields: the factor would find it with other
+    /// rounding.
     pub(super) fn solution(&self, run: &LoadingRun) -> Option<Solution> {
         self.is_behind.then(|| run.field.solution().clone())
     }
 
-    /// Goes on behind these windows, from a solution of the factor before, if there is one. The nodes that the last one
-    /// left are watched in the same order.
+    /// Goes on behind these windows, from a solution of the factor before the last yields, if there is one. The nodes
+    /// of the last window that did not join are watched in the same order.
     pub(super) fn follow_on(&mut self, log: &FactorLog, is_behind: bool) {
         self.window = Window::ended_with(log.untouched());
         self.is_behind = is_behind;
     }
 
-    /// The same where nodes may leave: none, and nothing has happened, if the updater does not say what nodes that touch
-    /// take off the contact. The next event is a touch.
+    /// Where nodes may leave: computes a window of states up to the next release, whose first event is a touch. Returns
+    /// false, and nothing has happened, with windows of one node and if the updater does not say what nodes that touch
+    /// take off the contact.
     pub(super) fn produce_before_release(
         &mut self,
         run: &mut LoadingRun,
@@ -226,7 +228,7 @@ impl Exact {
         multiple: usize,
         [approach, first]: [f64; 2],
     ) -> (usize, f64) {
-        // So that of more nodes that touch at once than can be watched those of the lowest indices are.
+        // If more nodes touch at once than can be watched, those of the lowest indices are.
         for (time, _) in &mut self.ranking {
             if *time <= first {
                 *time = first;
@@ -260,7 +262,7 @@ impl Exact {
             }
         }
         if horizon <= first {
-            // The others have higher indices; those that are watched touch here, but for what rounds.
+            // The others have higher indices. Those that are watched touch at `first`, to rounding.
             horizon = ties_until(approach + first) - approach;
         }
         (size, horizon)
@@ -330,8 +332,8 @@ impl Exact {
         log: &mut FactorLog,
         at_start: Option<&AtStart>,
     ) -> Result<(), Error> {
-        // When the first contradiction was is an estimate, which must not make the search long if it keeps
-        // failing.
+        // The time of the first contradiction is an estimate. If it keeps being too late, twice as many events are
+        // dropped each time, so that the search is short.
         let mut fewest = 1;
         while !self.window.is_of_touches() {
             let (trial, until) = self.try_end(run, updater)?;
@@ -387,8 +389,8 @@ impl Exact {
         self.window.events().last().map_or(0.0, |event| event.time)
     }
 
-    /// Drops events that a contradiction at the end of the window says were none, `until` before the end; returns how
-    /// many.
+    /// Drops the events behind the first contradiction, which began at `until` from the end of the window on, and
+    /// `fewest` at least; returns how many.
     fn drop_later(
         &mut self,
         run: &mut LoadingRun,
@@ -408,7 +410,7 @@ impl Exact {
     }
 
     /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns
-    /// with it how much before the end the first contradiction was, as far as rates tell.
+    /// the trial, and when the first contradiction began, from the end on, as far as rates tell.
     fn try_end(
         &mut self,
         run: &mut LoadingRun,
@@ -482,7 +484,7 @@ impl Exact {
     ) -> Result<(), Error> {
         let step = run.steps();
         let (problem, contact) = (trial.problem(&run.problem), &trial.contact);
-        // Whatever becomes of the updater, also by a panic: the states so far are known without it.
+        // If the updater fails or panics half-way, the fields of the states so far must not be read from it.
         let known = run.releases.forget(step);
         let before = run.contact.order();
         let has_left = |&(_, &node): &(usize, &usize)| !contact.contains(node);
@@ -553,7 +555,7 @@ impl Exact {
     }
 }
 
-/// By how much a solution on a contact at an approach may contradict what contact that grows does.
+/// How far a solution on a contact at an approach may be from what contact that grows does: by rounding.
 fn slack_at(
     run: &LoadingRun,
     (problem, contact, _): (&Problem, &ContactSequence, &[usize]),

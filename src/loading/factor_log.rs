@@ -64,7 +64,7 @@ impl FactorLog {
         left: impl Iterator<Item = usize>,
         joined: &[usize],
     ) {
-        // So that what left before is no part of it.
+        // An empty window, so that nodes that left before do not count as part of this one.
         self.windows.push([0; 3]);
         self.yielded.push([self.windows.len(), count]);
         left.for_each(|position| self.push_left(position));
@@ -191,7 +191,7 @@ fn leave(
     updater.release(problem, contact, &left)
 }
 
-/// The places of some nodes in an order, as far as they are ascending ones of it.
+/// The places of some nodes in an order, up to the first node that does not come in that order.
 fn places(order: &[usize], nodes: &[usize]) -> Vec<usize> {
     let mut nodes = nodes.iter().peekable();
     let found = order.iter().enumerate().filter(|(_, node)| nodes.next_if_eq(node).is_some());

@@ -160,8 +160,8 @@ impl LoadingPath {
         Ok(self.solved_at(state)?.map(without_tension))
     }
 
-    /// The pressure of the present state as it was solved for: gaps in contact are closed under it, and not where
-    /// tension is left out.
+    /// The pressure of the present state as it was solved for. Gaps in contact are closed under it; with tension set to
+    /// zero they would not be.
     fn solved(&mut self) -> Result<DMatrix<f64>, Error> {
         let Some(state) = self.state else {
             return Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny()));
@@ -341,14 +341,14 @@ mod tests {
         Ok(())
     }
 
-    /// Every state of the path is one; what is a state in number only is none: too little load on both nodes, an
-    /// approach at which a node beside them would overlap, an approach that is no number.
+    /// Every state of the path passes. Invented ones do not: an approach at which a node in contact is pulled, one at
+    /// which a node beside them overlaps, and one that is no number.
     #[test]
     fn what_is_no_state_of_contact_is_refused() -> Result<(), Error> {
         let (mut path, states) = path()?;
         path.verify()?;
         let last = states[2];
-        // Both nodes are in contact from the approach 1 on, and at less the second is pulled.
+        // Both nodes are in contact from the approach 1 on; below it the second one is pulled.
         let invented = last.contact.at_approach(0.5).unwrap_or(last.contact);
         path.state = Some(last.with(invented));
         let refused = path.verify();

@@ -43,7 +43,7 @@ pub struct History {
     layering: Layering,
 }
 
-/// Of the same states.
+/// Histories are equal if their states are.
 impl PartialEq for History {
     fn eq(&self, other: &Self) -> bool {
         self.states == other.states
@@ -70,9 +70,9 @@ impl History {
         &self.states
     }
 
-    /// The same states, of a body of which this is known. That of a record knows it. Conductance, slip and creep are
-    /// refused where it has layers of which their theories do not hold; of states alone, of which nothing is known,
-    /// they are as on a half-space.
+    /// The same states, with what the body is made of; the history of a record knows it. Conductance, slip and creep
+    /// are refused where it has layers for which their theories do not hold; where nothing is known of it they are
+    /// computed as on a half-space.
     #[must_use]
     pub fn on(mut self, layering: Layering) -> Self {
         self.layering = layering;
@@ -202,7 +202,7 @@ impl History {
         self.read(load, after, |state| state.contact.load, ContactState::at_load)
     }
 
-    /// The same with the state at a load \[N\] behind full contact, where a path ends before.
+    /// The history with one more state, that at a load \[N\] behind full contact, if the path ended before it.
     #[doc(hidden)] // for the program and the package of Python, which unload from there
     #[must_use]
     pub fn up_to_load(mut self, load: f64) -> Self {

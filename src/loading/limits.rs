@@ -230,7 +230,7 @@ impl Limits {
             (
                 LoadingEnd::Approach,
                 next.contact.approach > self.approach,
-                // In full contact mean planes come no closer before a node yields, but by what states are off.
+                // In full contact mean planes come no closer until a node yields: only errors of states pass the limit.
                 last.contact
                     .at_approach(self.approach)
                     .or(Some(ContactState { approach: self.approach, ..last.contact })),
@@ -244,7 +244,10 @@ impl Limits {
         let exceeded = exceeded.into_iter().filter(|(_, exceeded, _)| *exceeded);
         let first = exceeded
             .filter_map(|(end, _, state)| Some((end, state?)))
-            .min_by(|(_, a), (_, b)| a.load.total_cmp(&b.load));
+            // Loads are equal on a plateau.
+            .min_by(|(_, a), (_, b)| {
+                a.load.total_cmp(&b.load).then(a.approach.total_cmp(&b.approach))
+            });
         if let Some((end, state)) = first {
             return Some((end, last.at_limit(state)));
         }

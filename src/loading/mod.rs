@@ -8,10 +8,10 @@
 //! * In *windows*, if contact only ever grows: a δⱼ computed earlier is then a lower bound, and only the nodes
 //!   with the smallest ones need be watched until the *horizon*, the smallest bound among all others, is
 //!   reached. If bounds may fail, a window is checked at its end.
-//! * If nothing is known of the kernel, nodes may *leave*. Windows then end before one does, and are checked at their ends
-//!   and at each event; a release has a solution of its own. So has every event without a factor as long as fewer than a
-//!   hundred nodes are in contact, and with an updater that does not say what nodes that touch
-//!   [take off the others](crate::updater::LinearUpdater::relief).
+//! * If nothing is known of the kernel, nodes may *leave*. Windows then end before one does, and are checked at their
+//!   ends and at each event; a release has a solution of its own. Every event has one without a factor, as long as
+//!   fewer than a hundred nodes are in contact, and with an updater that does not say [what nodes that touch take off
+//!   the others](crate::updater::LinearUpdater::relief).
 //!
 //! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Exact` then watches nodes of both kinds,
 //! and checks a window in which nodes yield at its end before the updater learns of it.
@@ -58,20 +58,20 @@
 //!
 //! With a hardness it does the same with events of both kinds, once a node may yield: its matrices are those of
 //! [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), from local solutions for nodes that may
-//! touch and for nodes that may yield. All that is said above holds for its states; what nodes that touch and nodes
-//! that yield make of the error of a matrix may cancel at a window's end, so that estimates are ten times as great, a
-//! fiftieth of the mean spacing of events at least. Nodes that yield together get the approach at which their plastic
-//! depths begin, by the solution behind them. Even so estimates are no bounds where few nodes are elastic: with H =
-//! 0.05 E\* h′ on 256 × 256 nodes, to the yield of the last, 217 of 131 072 approaches were off by more, 2.3 times at
-//! worst; all events were those of the factor, 18 of them in another order within ties.
+//! touch and for nodes that may yield. All that is said above holds for its states, but their estimates are ten times
+//! as great, a fiftieth of the mean spacing of events at least: an error of a matrix acts on nodes that touch and on
+//! nodes that yield, and at the end of a window both effects may cancel. Nodes that yield together get the approach at
+//! which their plastic depths begin, by the solution behind them. Even so estimates are no bounds where few nodes are
+//! elastic: with H = 0.05 E\* h′ on 256 × 256 nodes, to the yield of the last, 217 of 131 072 approaches were off by
+//! more, 2.3 times at worst; all events were those of the factor, 18 of them in another order within ties.
 //!
 //! [`ContactRule::ApproximateOrder`] does not settle neighbours that are too close, for speed.
 //!
 //! # Ties
 //!
 //! Nodes that touch at once join one by one, in the order of their indices, with a factor and without: so do the nodes
-//! that symmetry maps to each other. At once are, with an exact updater, gaps below 10⁻¹³ of the approach when the
-//! first of them closes, and events within 10⁻⁹ of the approach with another one.
+//! that symmetry maps to each other. With a factor nodes touch at once if their gaps are below 10⁻¹³ of the approach
+//! when the first of them closes; without one, if their events lie within 10⁻⁹ of the approach.
 
 mod builder;
 mod contradiction;

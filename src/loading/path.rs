@@ -80,8 +80,8 @@ impl LoadingPath {
         }
         let Some(next) = self.run.queue.front() else {
             let nodes = self.run.contact_nodes();
-            let has_yielded = self.run.plastic.as_ref().map_or(0, |plastic| plastic.count());
-            self.end = Some(if has_yielded == self.run.problem.grid().nodes() {
+            let yielded = self.run.plastic.as_ref().map_or(0, |plastic| plastic.count());
+            self.end = Some(if yielded == self.run.problem.grid().nodes() {
                 LoadingEnd::FullyPlastic
             } else if nodes == self.run.problem.grid().nodes() && !self.run.may_yield() {
                 if self.limits.ends_before_full_contact() {
@@ -167,12 +167,13 @@ impl Iterator for LoadingPath {
             // Nodes may leave and touch again.
             return (0, None);
         }
-        let nodes = self.run.problem.grid().nodes();
+        let end = self.limits.most_nodes().min(self.run.problem.grid().nodes());
         let done = self.state.map_or(0, |state| state.contact.contact_nodes);
-        let mut most = self.limits.most_nodes().min(nodes).saturating_sub(done);
-        if let Some(plastic) = &self.run.plastic {
+        let mut most = end.saturating_sub(done);
+        if self.run.plastic.is_some() {
             // Each node in contact may yield.
-            most += self.limits.most_nodes().min(nodes).saturating_sub(plastic.count());
+            let plastic = self.state.and_then(|state| state.contact.plastic);
+            most += end.saturating_sub(plastic.map_or(0, |plastic| plastic.yielded_nodes));
         }
         // One more for an error or a limit.
         (0, Some(most + 1))

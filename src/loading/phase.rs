@@ -66,15 +66,15 @@ impl Phase {
         {
             iterations.take_over(problem, contact, approach, &solution)?;
         }
-        // Where the window of a factor was checked there is a solution of it: iterations begin with their own, whether
-        // or not.
+        // The gap field may hold a solution of the factor, if its last window was checked: iterations begin with their
+        // own in any case.
         run.field.forget();
         Ok(true)
     }
 
-    /// The iterations that take the place of a factor with `count` nodes, if that is one which may end: where the rest
-    /// of a path to `end` nodes in contact is cheaper with them and they can do, or where the factor leaves no room for
-    /// one more window. Without room for iterations it stays as long as it can.
+    /// The iterations that take the place of a factor with `count` nodes, if it may end: where the rest of a path to
+    /// `end` nodes in contact is cheaper with them and they are made for such cells, or where the factor leaves no room
+    /// for one more window. Without room for iterations it stays as long as it can.
     fn successor(&self, run: &LoadingRun, count: usize, end: usize) -> Option<Box<dyn Iterations>> {
         let Self::Factor { updater, may_end: true, .. } = self else {
             return None;
@@ -95,8 +95,8 @@ impl Phase {
         (has_room || count == 0).then_some(iterations)
     }
 
-    /// The number of nodes in contact at which a factor is looked at again, wherever windows begin: where it is given
-    /// up on the way to `end` of them, if it is.
+    /// The number of nodes in contact at which a window must end, so that the factor is given up there wherever windows
+    /// begin: all nodes if it is kept on the way to `end` of them.
     pub(super) fn stop(&self, run: &LoadingRun, end: usize) -> usize {
         let nodes = run.problem.grid().nodes();
         let last = greatest_factor(nodes, end);
@@ -115,8 +115,8 @@ impl Phase {
         }
     }
 
-    /// Lets a single node join, that touches at a time behind the present approach. With a factor `window` then says
-    /// what it adds to the stiffness; iterations learn of it by their next solution.
+    /// Lets a single node join, that touches at a time behind the present approach: with a factor through a window of
+    /// its own; iterations learn of it by their next solution.
     pub(super) fn admit(
         &mut self,
         run: &mut LoadingRun,
@@ -314,9 +314,8 @@ fn rest(run: &LoadingRun, count: usize, end: usize) -> Rest {
             return rest;
         }
         // As so far.
-        let steps = run.steps();
-        let releases = (steps - count) / 2;
-        return rest.with_releases(releases as f64 / steps.max(1) as f64);
+        let steps = run.releases.steps(count);
+        return rest.with_releases(run.releases.count() as f64 / steps.max(1) as f64);
     };
     // Of the nodes that are to touch most yield as well; those that have not yet leave the factor as others come.
     let yielded = plastic.count();

@@ -8,8 +8,8 @@ use crate::{Boundary, Error, Grid, Problem};
 
 /// A path's hardness, and the nodes that have yielded.
 ///
-/// They carry their hardness, and are a load on the others: whose contact is elastic, with the initial gap g + C H of
-/// that load.
+/// They carry their hardness H, which is a load on the others. The contact of these is elastic, with the initial gap
+/// g + C H under that load.
 #[derive(Debug)]
 pub(super) struct Plastic {
     hardness: Arc<Hardness>,

@@ -11,7 +11,7 @@ use super::tuning::{LEAST_RATE, TOLERANCE};
 use crate::Error;
 use crate::clock::Stopwatch;
 
-/// (time, node) of the nodes to which something may happen, whatever the time is that decides.
+/// (time, node) of the nodes that may touch or yield; whoever fills it says which time that is.
 pub(super) type Ranking = Vec<(f64, usize)>;
 
 /// Ranks the nodes out of contact by the time from which on they tie with one that touches, if no other joined, after

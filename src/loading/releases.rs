@@ -30,6 +30,11 @@ impl Releases {
         contact_nodes + 2 * self.log.len()
     }
 
+    /// How many nodes have left.
+    pub(super) fn count(&self) -> usize {
+        self.log.len()
+    }
+
     /// Notes that a node left at the event number `step`.
     pub(super) fn push(&mut self, step: usize, Left { node, position }: Left) {
         self.note(Release { step, node, position, has_yielded: false });

@@ -123,7 +123,7 @@ impl LoadingRun {
         self.plastic.as_ref().map_or(f64::INFINITY, |plastic| plastic.hardness().values()[node])
     }
 
-    /// Whether a node has yielded.
+    /// Whether any node has yielded.
     pub(super) fn has_yielded(&self) -> bool {
         self.plastic.as_ref().is_some_and(|plastic| plastic.count() > 0)
     }
@@ -435,16 +435,12 @@ impl LoadingRun {
         }
     }
 
-    /// The first of so many nodes in contact whose pressure at an approach is not a number, or below zero by more than
+    /// The first node in contact whose pressure at an approach is not a number, or below zero by more than
     /// rounding and what goes with an overlap that the solution may leave.
-    pub(super) fn negative_pressure(
-        &self,
-        count: usize,
-        (approach, overlap): (f64, f64),
-    ) -> Option<(usize, f64)> {
+    pub(super) fn negative_pressure(&self, approach: f64, overlap: f64) -> Option<(usize, f64)> {
         let greatest = self.greatest_pressure(approach);
         let most = TOLERANCE * greatest + overlap / self.problem.table().self_influence();
-        let mut pressures = self.field.pressures(&self.contact, approach).take(count);
+        let mut pressures = self.field.pressures(&self.contact, approach);
         pressures.find(|(_, p)| p.is_nan() || *p < -most)
     }
 

@@ -43,7 +43,7 @@ pub(super) struct PlasticScalars {
     pub(super) rates: [f64; 2],
 }
 
-/// What an event makes of the rates, per unit of approach.
+/// Rates behind an event, or how it changes them, per unit of approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rates {
     /// `eᵀ C_II⁻¹ e` of the elastic nodes.
@@ -103,7 +103,7 @@ impl PathScalars {
         self.mean_gap -= self.closing * change;
     }
 
-    /// By how much the load is greater than that of another front.
+    /// By how much the load is greater than that of other scalars.
     pub(super) fn load_beyond(&self, other: &Self) -> f64 {
         self.load - other.load
     }
@@ -123,9 +123,9 @@ impl PathScalars {
         self.approach = approach;
     }
 
-    /// Adds to load, mean gap, energy and plastic sums what they lack at the end of a window, where `walked` got there
-    /// from this one's window and `end` is exact: by the way of the load, the way of the rest, and those of both
-    /// plastic sums. Of the energy, what comes in lacks by the square of the way, and plastic work takes from it.
+    /// Adds to load, mean gap, energy and plastic sums what they lack at the end of a window, where the window came to
+    /// `walked` and `end` is exact: by the way of the load, the way of the rest, and those of both plastic sums. What
+    /// the energy lacks is work of the load, by the square of the way, less plastic work, by its own.
     pub(super) fn pin(
         &mut self,
         walked: &Self,
@@ -207,7 +207,7 @@ impl PathScalars {
         }
     }
 
-    /// A load beyond what nodes with pressures of these sums carry is rounding.
+    /// Keeps the load between what pressures of these sums carry: beyond, it is rounding.
     pub(super) fn clamp_load(&mut self, [least, most]: [f64; 2]) {
         let area = self.grid.cell_area();
         self.load = self.load.max(area * least).min(area * most);

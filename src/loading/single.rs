@@ -15,7 +15,7 @@ use crate::clock::Stopwatch;
 use crate::tied_events::TiedEvents;
 use crate::updater::{Left, Solution};
 
-/// The next event, unless another one comes first.
+/// The next event.
 #[derive(Debug, Clone, Copy)]
 struct Upcoming {
     approach: f64,
@@ -62,8 +62,8 @@ impl Single {
         Ok(())
     }
 
-    /// Computes states up to the next release, if a window holds them; otherwise one state, unless there is none with at
-    /// most `most_nodes` in contact.
+    /// Computes states up to the next release, if a window holds them; otherwise one state, unless there is none with
+    /// at most `most_nodes` in contact.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
@@ -158,8 +158,7 @@ impl Single {
         phase.renew_field(run, approach)?;
         let overlap = WindowTolerances::of(run, phase.tolerance()).overlap(approach);
         let length = run.problem.greatest_gap() + approach.abs();
-        let count = run.contact.len();
-        let is_pulled = |overlap| run.negative_pressure(count, (approach, overlap));
+        let is_pulled = |overlap| run.negative_pressure(approach, overlap);
         let allowed = if self.inherited > 0.0 { overlap.max(ESTIMATED * length) } else { overlap };
         if let Some((node, value)) = is_pulled(allowed) {
             return Err(run.not_monotone("pressure", node, value));

@@ -90,8 +90,8 @@ impl Snapshot {
         let cell_area = run.problem.grid().cell_area();
         let load = cell_area * self.pressure.iter().sum::<f64>();
         let scale = load.abs().max(self.stiffness * self.approach);
-        // At first touch, and where nodes have yielded under next to nothing, all that is left is what contact is
-        // closed to.
+        // At first touch, and where nodes have yielded under hardly any load, the gaps to which contact is closed are
+        // all that counts.
         let rounding = self.rounding(run);
         // NaN is refused as well.
         let same_load = (load - state.contact.load).abs() <= (allowed * scale).max(rounding);
@@ -99,9 +99,9 @@ impl Snapshot {
             return refused("load", load, "the load of the state");
         }
         self.check_tension(run, phase.tolerance(), state)?;
-        let overlap = self.worst_overlap(run, state.step)?;
-        if overlap < -self.allowed_gap(run, state) {
-            return refused("least gap out of contact", overlap, "no overlap");
+        let least_gap = self.least_gap_outside(run, state.step)?;
+        if least_gap < -self.allowed_gap(run, state) {
+            return refused("least gap out of contact", least_gap, "no overlap");
         }
         Ok(())
     }
@@ -128,7 +128,7 @@ impl Snapshot {
         Ok(())
     }
 
-    /// What the gaps that contact is closed to are worth as a load.
+    /// The load that goes with the gaps to which contact is closed, by the stiffness.
     fn rounding(&self, run: &LoadingRun) -> f64 {
         TOLERANCE * self.stiffness * self.lengths(run)
     }
@@ -182,9 +182,9 @@ impl Snapshot {
         (self.nodes.len() as f64).sqrt() * tolerance * length / least
     }
 
-    /// The gap of the node that touches next, which is the first to overlap; of all nodes out of contact if
-    /// the next one is not known.
-    fn worst_overlap(&self, run: &mut LoadingRun, step: usize) -> Result<f64, Error> {
+    /// The gap of the node that touches next, which is the first to overlap; the least gap of all nodes out of contact
+    /// if the next one is not known. Below zero it is an overlap.
+    fn least_gap_outside(&self, run: &mut LoadingRun, step: usize) -> Result<f64, Error> {
         if step < run.steps() && run.plastic.is_none() {
             let gap = run.problem.initial_gap();
             let next = run.releases.contact_at(run.contact.order(), step + 1);
@@ -371,7 +371,7 @@ mod tests {
     fn overlap_is_refused() -> Result<(), Error> {
         for (overlap, refused) in [(11e-6, None), (13e-6, Some("least gap out of contact"))] {
             let neighbour = 3.0 - overlap;
-            // At the front of all nodes, behind it of the one that touches next alone.
+            // At the last state that of all nodes counts, at earlier ones that of the node that touches next alone.
             for (contact, far, refused) in
                 [(&[0][..], 8.0, refused), (&[0, 1], 8.0, refused), (&[0, 2], 8.0, None)]
             {

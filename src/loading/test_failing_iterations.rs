@@ -334,7 +334,8 @@ impl Small {
         })
     }
 
-    /// Windows on a free and on a periodic body, near ties, one event at a time, and nodes that leave.
+    /// With a hardness and without: windows on a free and on a periodic body, near ties, and windows that are taken
+    /// back; without, one event at a time, and nodes that leave.
     fn all() -> Result<Vec<Self>, Error> {
         let grid = Grid::new(5, 4, 1.0, 1.0)?;
         let gaps: Vec<f64> = (0..grid.nodes())

@@ -4,7 +4,7 @@ use super::gap_field::GapLine;
 use super::run::LoadingRun;
 use super::tuning::{EXACT_TIE, OF_GAP, RATE_TOLERANCE, ROUNDING, TIE, UNWATCHED};
 
-/// Up to which approach events tie with one at some approach, with an exact updater.
+/// The approach up to which events tie with one at `approach`, with an exact updater.
 pub(super) fn ties_until(approach: f64) -> f64 {
     approach + EXACT_TIE * approach
 }

@@ -49,7 +49,7 @@ pub(super) const MOST_CHANGE: f64 = 0.3;
 /// tuned.
 pub(super) const CERTAIN: usize = 2;
 /// The least determinant of `WᵀV`, relative to the product of its diagonal, with which it is inverted: rounding of
-/// these products. No effect.
+/// these products. No effect. The same for the bounds of gaps between the events of a window with a factor.
 pub(super) const LEAST_DETERMINANT: f64 = 1e-6;
 /// Newton steps to the root of a cubic that is nearly a line. Half or twice: no effect, for they converge
 /// quadratically.
@@ -155,9 +155,9 @@ pub(super) const SLACK_OF_RATE: f64 = 1e-3;
 
 /// Events closer than this, relative to the approach, are ties without a factor: the lowest index comes first.
 pub(super) const TIE: f64 = 1e-9;
-/// The same with a factor, of gaps: those that are as small as this part of the approach when one of them closes close
-/// with it. Well above the rounding of a gap (3·10⁻¹⁴ on symmetric surfaces of 128 × 128 nodes), and below what a state
-/// may be off.
+/// The same with a factor, of gaps: when one of them closes, those as small as this part of the approach close with it.
+/// Well above the rounding of a gap (3·10⁻¹⁴ on symmetric surfaces of 128 × 128 nodes), and below what a state may be
+/// off.
 pub(super) const EXACT_TIE: f64 = 1e-13;
 /// The same as [`TIE`], relative to the greatest initial gap: rounding of heights.
 pub(super) const ROUNDING: f64 = 1e-14;
@@ -167,7 +167,8 @@ pub(super) const RATE_TOLERANCE: [f64; 2] = [5e-7, 1e-5];
 pub(super) const UNWATCHED: f64 = 100.0;
 /// How far below zero a gap may lie at the end of an exact window before events are taken back, as a multiple of the
 /// greatest gap that the solution there leaves in contact, which is rounding. What is taken back without need costs
-/// time and changes nothing, so that the bound need not be as wide as that of an error.
+/// time and changes nothing, so that the bound need not be as wide as that of an error. Without a factor the same of
+/// pressures, times what a unit pressure displaces.
 pub(super) const OF_RESIDUAL: f64 = 8.0;
 /// The same of gaps out of contact and of plastic depths, as a multiple of the greatest gap r that a solution without a
 /// factor leaves in contact: they are off by `C_oe C_ee⁻¹ r`. Rows of that are not negative and sum to 1 at most where
@@ -183,9 +184,8 @@ pub(super) const TOLERANCE: f64 = 1e-10;
 /// which nodes yield, and the condition is some 20 times the ratio of the sides (4 × 8 nodes, 2600 : 1: 5·10⁴, a depth
 /// off by 1.1·10⁻¹⁰). On longer cells the tolerance grows with the ratio.
 pub(super) const SQUARE: f64 = 250.0;
-/// The pressure of a node that touches is watched from the beginning of its window on if it could come to a part of its
-/// hardness, one by this number, on what the node alone feels of the approach. A node that was not watched and comes to
-/// it contradicts the window.
+/// The pressure of a node out of contact is watched if, alone, it could come to its hardness over this number by the
+/// end of the window. A node that was left out and comes to its hardness contradicts the window.
 pub(super) const BORDERED: f64 = 4.0;
 /// How far a state of a path may be off, relative to its load, pressures and lengths, to be recognised: an exact path
 /// is right to some 10⁻¹².
@@ -213,9 +213,9 @@ pub(super) const CONVOLUTION: f64 = 50.0;
 /// Greatest number of watched nodes, as a fraction of the contact nodes: their columns must stay small beside the
 /// factor.
 pub(super) const MOST_WATCHED: f64 = 0.05;
-/// Where nodes may leave, at least so many nodes are watched,
+/// Where nodes may leave, no more nodes are watched than this,
 pub(super) const FEWEST_BETWEEN_RELEASES: usize = 16;
-/// or so many times as have joined in the window before.
+/// or than this many times those that joined in the window before, if that is more.
 pub(super) const AS_MANY_AGAIN: usize = 3;
 /// Nodes that were not watched before come in multiples of this if there are more: widths that suit the matrix product.
 pub(super) const MULTIPLE: usize = 96;
@@ -237,8 +237,8 @@ pub(super) const LEAST_WINDOW: usize = 64;
 pub(super) const FACTOR: f64 = 1.0e-11;
 /// So many times that where windows are checked at each event, since nodes may leave.
 pub(super) const CHECKED: f64 = 2.5;
-/// Seconds of a node that leaves: per n², two solutions, for a window ends before it, and the rotations of the factor, and
-/// per node of the grid two convolutions of two fields.
+/// Seconds of a node that leaves: per n², two solutions, for a window ends before it, and the rotations of the factor,
+/// and per node of the grid two convolutions of two fields.
 pub(super) const RELEASE_WITH_FACTOR: [f64; 2] = [2.0e-9, 1.0e-7];
 /// Seconds that a node that leaves takes by iterations, per node of the grid: windows end before it, and it has a
 /// solution of its own.
@@ -254,6 +254,6 @@ pub(super) const WINDOW: f64 = 2.0e-4;
 /// which begin with nothing. Paths that end right behind it took 0.12, 0.10 and 0.40 s more on 128², 256² and 512² with
 /// 5900, 6400 and 8000 nodes.
 pub(super) const HANDOVER: [f64; 2] = [1.3e-6, 8.0e-6];
-/// A factor is given up for no less than this part of the time that the rest of the path takes with it: states are
+/// A factor is given up only if that saves this part of the time that the rest of the path takes with it: states are
 /// estimates then.
 pub(super) const SAVED: f64 = 0.2;

@@ -1,4 +1,4 @@
-//! The stiffness of all nodes in contact, those that have yielded among them.
+//! The stiffness on unloading: that of all nodes in contact, those that have yielded among them.
 
 use super::path::LoadingPath;
 use super::snapshot::not_on_path;

@@ -24,7 +24,11 @@ use crate::updater::{Left, Solution};
 /// |---|---|---|
 /// | `ahead` | the states of the window that are yet to come: the contact at its end | the same |
 /// | `handed_over_at` | | when the factor was given up, which memory may have decided |
-/// | `next` | [`FactorLog`], the windows so far, or single events: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events; behind yields the solution of the factor before | [`EstimatedEnd`] and [`Kept`](crate::updater::Kept) |
+/// | `next` | [`FactorEnd`] | [`EstimatedEnd`] and [`Kept`](crate::updater::Kept) |
+///
+/// The [`FactorLog`] has the windows and single events so far: the factor is made again by the same steps, and the next
+/// window keeps the order of the nodes that were watched last and have not touched. Scalars are sums over all events.
+/// Behind yields the solution is that of the factor before them.
 ///
 /// Nothing else is remembered from window to window. Timings are not kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,7 +114,9 @@ impl LoadingPath {
                 _ => false,
             };
             let nodes = contact.len() + yielded.len();
-            let is_next = is_event && state.step == step && state.contact.contact_nodes == nodes;
+            let said = state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes);
+            let is_counted = state.contact.contact_nodes == nodes && said == yielded.len();
+            let is_next = is_event && state.step == step && is_counted;
             if !is_next || !state.contact.is_finite() || state.approach_error.is_nan() {
                 let number = state.step as f64;
                 return Err(not_on_path(

@@ -1,4 +1,5 @@
-//! Stiffnesses of the last state: no state follows them, and the window with which the path goes on has them too.
+//! Stiffnesses of the last state. No later state follows from them, but the window with which the path goes on has
+//! them.
 
 use super::increments::{Found, ROUNDING};
 use super::stiffnesses::{CONTACT, INTERFACIAL, SAME_STIFFNESS};
@@ -7,7 +8,7 @@ use crate::{Error, Grid};
 
 /// Without a factor states know how fast the mean gap closes to 4·10⁻³ of it at worst.
 const SAME_CLOSING: f64 = 2e-2;
-/// What displacements leave of it in full contact.
+/// What rounding of displacements leaves of that rate in full contact, where it is 0.
 const NO_CLOSING: f64 = 1e-6;
 
 /// Checks the last of some states, where the next window begins.

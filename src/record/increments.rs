@@ -71,8 +71,8 @@ pub(super) fn check(
     let stiffnesses = Stiffnesses::new(grid, origin);
     let (lx, ly) = grid.sides();
     let displaced = lx.max(ly).max(stiffnesses.displaced(last.contact.load));
-    // A sum over all nodes, each of which has some dozens of roundings of its own: products, and transforms of numbers of
-    // nodes that are primes.
+    // A sum over all nodes, each of which has some dozens of roundings of its own: products, and transforms of numbers
+    // of nodes that are primes.
     let roundings = 16.0 * (grid.nodes() + 16) as f64;
     let displaced = roundings * f64::EPSILON * displaced / ROUNDING;
     let length = mean_gap.abs() + last.contact.approach.abs() + displaced;

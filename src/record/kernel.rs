@@ -24,7 +24,7 @@ pub struct KernelRecord {
 }
 
 impl KernelRecord {
-    /// Number of coefficients that are remembered: at the offsets 0, 1, half a side and a whole one in either
+    /// Number of coefficients that are remembered: at the offsets 0, 1, half a side and the greatest one in either
     /// direction.
     pub const OFFSETS: usize = 16;
 
@@ -79,7 +79,7 @@ impl KernelRecord {
                 KernelTable::new(&PeriodicBoussinesq::new(grid, *e_star)?)
             }
             KernelOrigin::SemiPeriodicBoussinesq { e_star, boundary } => {
-                // Of the others neither names a direction.
+                // The other boundaries name no direction.
                 let along = if *boundary == Boundary::PeriodicY { Axis::Y } else { Axis::X };
                 KernelTable::new(&SemiPeriodicBoussinesq::new(grid, *e_star, along)?)
             }
@@ -93,7 +93,7 @@ impl KernelRecord {
             }
             KernelOrigin::Other => Err(Error::ForeignKernel),
         }?;
-        // As a problem takes it.
+        // In the gauge that a problem uses.
         let table = table.regular();
         self.check(&table)?;
         Ok(table)

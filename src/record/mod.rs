@@ -2,8 +2,8 @@
 //!
 //! A [`LoadingRecord`] holds the surface, what kernel it was, the states and why they end: enough to read the path at
 //! any load, approach, mean gap or area ([`history`](LoadingRecord::history)), to compute the fields of any of its
-//! states ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)). Paths
-//! with adhesion have an [`AdhesiveRecord`].
+//! states ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)).
+//! Paths with adhesion have an [`AdhesiveRecord`].
 //!
 //! ```
 //! use asperity::record::LoadingRecord;

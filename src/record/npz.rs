@@ -50,7 +50,7 @@ struct Parameters {
     units: String,
 }
 
-/// What says of which kind a record is.
+/// The name of the format alone, which tells one kind of record from another.
 #[derive(Debug, Deserialize)]
 struct Named {
     format: String,
@@ -67,7 +67,7 @@ pub(super) struct Column<S> {
     pub(super) set: fn(&mut S, f64),
 }
 
-/// A state that has those of a contact.
+/// A state with the scalars of a contact.
 pub(super) trait OfContact {
     fn contact(&self) -> &ContactState;
     fn contact_mut(&mut self) -> &mut ContactState;

@@ -1,4 +1,4 @@
-//! A depth, or what deeper ones say of it. Lengths are in long sides of a cell.
+//! A depth, or an extrapolation to it from greater ones. Lengths are in long sides of a cell.
 
 use super::lanes::{LANES, Lanes, each, fades};
 
@@ -15,7 +15,7 @@ pub(super) enum Depth {
 }
 
 impl Depth {
-    /// What responses at 1, 2, … let expect at the depth z.
+    /// The extrapolation from responses at 1, 2, … to the depth z.
     ///
     /// Far from a load its response varies with depth over as much as the distance is: at a distance of r the error is
     /// some 10! × 10 / r¹², and beyond [`REACH`](Self::REACH) nothing.

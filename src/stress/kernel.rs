@@ -13,8 +13,8 @@ use crate::{Boundary, Error, Grid};
 /// Coefficients by offset.
 type Offsets<'a> = &'a (dyn Fn(isize, isize) -> f64 + Sync);
 
-/// Periods between the grid and its image across, in the periodic kernel that one which repeats along a side is made
-/// from: waves that vary along it fade as exp(−2π|y|/L).
+/// A kernel that repeats along x is made from one that repeats along y too. Between the grid and its image there are so
+/// many periods along x: waves that vary along x fade as exp(−2π|y|/L).
 const APART: f64 = 5.0;
 
 /// Where a layer, or a depth below it, is thinner than this, in long sides of a cell, too many waves look alike on a
@@ -50,7 +50,7 @@ enum Table {
 }
 
 impl StressKernel {
-    /// That of a pressure on layers, at a depth above zero that is not in a rigid base.
+    /// That of a pressure on layers, at a depth of 0 or more that is not in a rigid base.
     ///
     /// # Errors
     ///
@@ -142,7 +142,7 @@ impl StressKernel {
                 };
                 let of_wave = |kx: usize, ky: usize| {
                     let value = waves.at((kx, ky), component, &self.response);
-                    // What cells say of the uniform wave does not count.
+                    // The spectrum has the whole response to the uniform wave: what cells add to it is taken off.
                     if (kx, ky) == (0, 0) && parity == Parity::Even {
                         value - uniform
                     } else {
@@ -173,7 +173,8 @@ impl StressKernel {
 /// From this depth on, in long sides of a cell, waves that look alike on the grid have soon faded.
 const DEEP: f64 = 1.0;
 
-/// Waves, and where they hardly fade what deeper ones say of them, with the difference on cells near the load.
+/// Waves alone at depths where they soon fade, and if the load consists of those of the grid. Otherwise waves that are
+/// extrapolated from greater depths, and the difference from these on cells near the load.
 fn periodic(domain: &Domain, response: &Response, z: f64) -> Table {
     let Domain { grid, between, .. } = domain;
     let (depth, near) = split(grid, *between, response, z);
@@ -182,7 +183,7 @@ fn periodic(domain: &Domain, response: &Response, z: f64) -> Table {
     Table::Periodic { cells, waves }
 }
 
-/// The depth of waves, and the difference on cells if they are not of the depth itself.
+/// The depth of the waves, and the difference on cells if they are extrapolated.
 fn split(grid: &Grid, between: Between, response: &Response, z: f64) -> (Depth, Option<Near>) {
     if between == Between::Waves || z >= DEEP {
         return (Depth::At(z), None);
@@ -191,7 +192,7 @@ fn split(grid: &Grid, between: Between, response: &Response, z: f64) -> (Depth, 
     (depth, Some(Near::new(grid, &depth, response, z)))
 }
 
-/// How the response at a depth differs from what is extrapolated: near the load alone.
+/// The difference between the response at a depth and the extrapolated one, which is nothing far from the load.
 struct Near {
     shape: (usize, usize),
     values: Vec<Stresses>,
@@ -251,8 +252,8 @@ impl Near {
 
 /// Of a grid that repeats along x alone, at offsets of a period along x and at those that are not negative across.
 ///
-/// What varies along x fades across, and is that of a grid that repeats there too, at a distance. What does not is that
-/// of strips.
+/// What varies along x fades across it, so that it is the same on a grid that also repeats across at a great distance.
+/// The mean along x is the response to strips.
 fn along_x(grid: &Grid, response: &Response, z: f64) -> Result<Vec<Stresses>, Error> {
     let (nx, ny) = grid.shape();
     let (dx, dy) = (grid.dx(), grid.dy());

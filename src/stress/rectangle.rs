@@ -28,7 +28,7 @@ use std::f64::consts::TAU;
 
 use super::lanes::{LANES, Lanes, each};
 
-/// A product of direction cosines of a wave; one of them squared is what 1 leaves of the other.
+/// A product of direction cosines of a wave. Those with the square of c_y follow from `c_x² + c_y² = 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cosines {
     One,

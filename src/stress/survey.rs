@@ -59,7 +59,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// The greatest value of a measure at any of the depths. Between chosen depths it has been looked for: see
+    /// The greatest value of a measure at any of the depths. A survey that chooses its depths adds some around it: see
     /// [`Subsurface::survey`].
     #[must_use]
     pub fn greatest(&self, measure: Measure) -> Greatest {
@@ -132,7 +132,7 @@ impl Subsurface {
         Ok(depths)
     }
 
-    /// What each material takes of the depth: the layers from the uppermost on, and the base unless it is rigid.
+    /// The depths of each material: the layers from the uppermost on, and the base unless it is rigid.
     pub(super) fn spans(&self) -> Vec<Span> {
         let layers = self.layers().map_or(&[][..], LayeredBody::layers);
         let mut spans = Vec::new();
@@ -260,7 +260,7 @@ fn vertex((a, fa): (f64, f64), (b, fb): (f64, f64), (c, fc): (f64, f64)) -> f64 
     let shift = 0.5 * (right * right * rise - left * left * fall) / curvature;
     let shift = if shift.is_finite() { shift } else { 0.0 };
     let least = 0.05 * left.min(right);
-    // A middle that is the vertex already: the longer side is divided.
+    // If the middle is the vertex already, the longer side is divided.
     let shift = if shift.abs() < least {
         if right > left { least.max(0.25 * right) } else { -least.max(0.25 * left) }
     } else {

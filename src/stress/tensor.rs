@@ -23,7 +23,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All that there are.
+    /// All measures.
     pub const ALL: [Self; 4] =
         [Self::VonMises, Self::Tresca, Self::GreatestShear, Self::GreatestTension];
 
@@ -105,7 +105,7 @@ impl Stress {
     fn may_exceed(&self, [von_mises, tresca, _, tension]: [f64; 4]) -> bool {
         let own = self.von_mises();
         let mean = (self.xx + self.yy + self.zz) / 3.0;
-        // More than all roundings: that of an angle is the root of one.
+        // A margin above all rounding: that of the angle is of the order of the root of one.
         let more = 1e-7 * (own + mean.abs());
         let (difference, above) = (own * (2.0 / 3.0_f64.sqrt()), own * (2.0 / 3.0));
         if own > von_mises {
@@ -124,7 +124,7 @@ impl Stress {
         !is_less
     }
 
-    /// Determinant of what a tensor is more than its mean.
+    /// Determinant of the deviator, the tensor less its mean.
     fn third_invariant(&self, mean: f64) -> f64 {
         let Self { xx, yy, zz, yz, xz, xy } = *self;
         let (xx, yy, zz) = (xx - mean, yy - mean, zz - mean);
@@ -140,7 +140,7 @@ impl Stress {
     }
 }
 
-/// Nodes among which a greatest value is looked for together.
+/// Nodes that one thread searches for the greatest values at a time.
 const PART: usize = 1 << 14;
 
 /// Replaces what is less; of equals the first stays.
@@ -261,8 +261,8 @@ mod tests {
         }
     }
 
-    /// What is left out is never greater, and few that are not are left in: states around simple ones, where two principal
-    /// stresses are equal, and anywhere.
+    /// What is left out is never greater, and few that are not are left in: states around simple ones, where two
+    /// principal stresses are equal, and anywhere.
     #[test]
     fn nothing_greater_is_left_out() {
         let mut state = 1_u64;

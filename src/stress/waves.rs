@@ -38,7 +38,7 @@ type Wave = (f64, f64);
 struct Neighbours {
     q: Lanes,
     weight: Lanes,
-    /// Square of the least wave number.
+    /// Square of the least wave number among them.
     least: f64,
 }
 
@@ -79,7 +79,7 @@ fn alike(k: usize, (n, side): (usize, f64), between: Between, most: f64) -> Vec<
 
 impl Spectrum {
     pub(super) fn new(grid: &Grid, between: Between, depth: &Depth, response: &Response) -> Self {
-        // On the surface all waves count; it is never asked for of cells.
+        // Infinite on the surface, where all waves count: with loads on cells no spectrum is asked for there.
         let most = FADED / depth.least();
         let add = |sums: &mut WaveSums, x: Wave, y: &Neighbours| {
             vectorized(
@@ -127,8 +127,8 @@ impl Spectrum {
         self
     }
 
-    /// From the waves that look like each wave of the grid: `add` is given all that are not beyond the wave number
-    /// `most`, and some that are, and `of` tells the stresses from a sum.
+    /// Sums, for each wave of the grid, over all waves that look like it: `add` gets those up to the wave number
+    /// `most`, and some beyond it, and `of` makes stresses of a sum.
     fn summed<S: Default>(
         (grid, between): (&Grid, Between),
         most: f64,
@@ -140,7 +140,7 @@ impl Spectrum {
         let (nx, ny) = shape;
         let height = ny / 2 + 1;
         let neighbours = |first: usize| -> Vec<Neighbours> {
-            // Behind the last there is nothing to be found.
+            // Lanes behind the last wave repeat it, and nothing reads them.
             let waves =
                 |lane: usize| alike((first + lane).min(height - 1), (ny, grid.dy()), between, most);
             let lanes: [Vec<Wave>; LANES] = std::array::from_fn(waves);
@@ -187,7 +187,8 @@ impl Spectrum {
         spectrum
     }
 
-    /// The shortest wave of an even number of nodes runs both ways: what depends on the way is nothing.
+    /// The shortest wave along a side with an even number of nodes is its own mirror image: components that change
+    /// their sign with the direction are 0.
     fn silence(&mut self, response: &Response) {
         let (nx, ny) = self.shape;
         let height = ny / 2 + 1;

@@ -15,7 +15,7 @@ use crate::{ContactTarget, Error, LoadingPath, LoadingState, StressError};
 pub struct FirstYield {
     /// The state.
     pub state: LoadingState,
-    /// Von Mises' stress there, which is the yield stress within [`FirstYield::TOLERANCE`], and where it is.
+    /// The greatest von Mises stress there, which is the yield stress within [`FirstYield::TOLERANCE`].
     pub greatest: Greatest,
 }
 
@@ -113,7 +113,7 @@ fn first_reached(
         }
         let high = above.state.contact.load;
         let load = match &below {
-            // As of a sphere, with the cube of the stress.
+            // As for a sphere, whose load goes with the cube of the stress.
             None => high * over.powi(-3),
             Some(below) => between(below, &above, yield_stress),
         };

@@ -15,7 +15,7 @@ const MOST: usize = 150;
 /// Greatest difference from a dense solution, relative to the greatest value: influence matrices of so
 /// few nodes lose some three digits.
 const TOLERANCE: f64 = 1e-9;
-/// How much more than its gaps the pressures of a solution by iterations may be off, relatively.
+/// How many times the tolerance of its gaps the pressures of a solution by iterations may be off, relatively.
 const LOST: f64 = 1e3;
 
 /// The result of [`check`].
@@ -30,12 +30,12 @@ pub struct UpdaterReport {
     pub solution_error: f64,
     /// Whether the updater takes nodes back.
     pub truncates: bool,
-    /// Whether the updater lets nodes in the middle of the contact go.
+    /// Whether the updater lets nodes in the middle of the contact go. Tried only if it takes nodes back.
     pub releases: bool,
-    /// Whether it serves paths with a hardness.
+    /// Whether it serves paths with a hardness. Tried only if it lets nodes go.
     pub yields: bool,
-    /// Whether it answers with [`relief`](LinearUpdater::relief), which spares a solution for each event where nodes may
-    /// leave.
+    /// Whether it answers with [`relief`](LinearUpdater::relief), which spares a solution for each event where nodes
+    /// may leave.
     pub relieves: bool,
 }
 
@@ -262,7 +262,7 @@ fn greatest(values: &[f64]) -> f64 {
     if greatest > 0.0 { greatest } else { 1.0 }
 }
 
-/// NaN is wrong as well.
+/// `Ok` if an error is within the tolerance, which NaN is not.
 fn check_error(
     quantity: &'static str,
     contact_nodes: usize,

@@ -11,7 +11,7 @@ use crate::{Error, Problem};
 #[derive(Debug, Default)]
 pub(crate) struct Solved {
     pub(crate) solution: Solution,
-    /// Under the pressure \[m\], and under the rate.
+    /// Under the pressure \[m\], and under its rate.
     pub(crate) displacement: [Vec<f64>; 2],
 }
 
@@ -74,8 +74,8 @@ pub(crate) trait Iterations: Debug + Send + Sync {
         solution: &Solution,
     ) -> Result<(), Error>;
 
-    /// What later answers depend on, besides problem and contact, as plain numbers: at the end of a window, and if that
-    /// can be told.
+    /// All on which later answers depend besides problem and contact, as plain numbers, at the end of a window; `None`
+    /// if these iterations cannot be restored from there.
     fn keep(&self, problem: &Problem, contact: &ContactSequence) -> Option<Kept> {
         let _ = (problem, contact);
         None

@@ -1,4 +1,4 @@
-//! A contact that is known as a whole, joined block by block.
+//! Nodes that are all known to be in contact join it block by block.
 
 use super::tuning::JOINED;
 use super::{LinearUpdater, Schur, WindowFactor};

@@ -13,7 +13,7 @@
 pub(crate) struct Kept {
     /// Greatest gap in contact that solutions leave, relative to the approach.
     pub tolerance: f64,
-    /// Where the solution is, and how far the approach may go on with its rate \[m\].
+    /// The approach of the solution, and how far the approach may go on with its rate \[m\].
     pub approach: f64,
     pub serves: f64,
     /// Pressures \[Pa\], and their rates.

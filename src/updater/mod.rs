@@ -252,9 +252,9 @@ pub trait LinearUpdater: Any + Send + Sync {
     ///     \begin{pmatrix} C_{PI} \\ E_Q^T \end{pmatrix} C_{II}^{-1} \begin{pmatrix} C_{IP} & E_Q \end{pmatrix}
     /// ```
     ///
-    /// with the unit vectors $`E_Q`$ of these positions. M says what pressures on P and overlaps of Q change: gaps of
-    /// P, and pressures of Q. Only its lower triangle need be written, and no row sums. Called only on paths with a
-    /// hardness. [`join`](Self::join) may follow, for some of P.
+    /// with the unit vectors $`E_Q`$ of these positions. M gives the changes of the gaps of P and of the pressures of Q
+    /// under pressures on P and overlaps of Q. Only its lower triangle need be written, and no row sums. Called only on
+    /// paths with a hardness. [`join`](Self::join) may follow, for some of P.
     ///
     /// # Errors
     ///
@@ -329,7 +329,7 @@ impl fmt::Debug for dyn LinearUpdater {
     }
 }
 
-/// Forwards every verb to another updater.
+/// Forwards all methods to another updater but `bytes`, which borrows it without `mut`.
 macro_rules! forward_verbs {
     ($inner:ident) => {
         fn watch(

@@ -110,8 +110,9 @@ impl WindowFactor {
         self.signs.clear();
         self.factor.clear();
         self.subtracted = 0;
-        // So that no event ever allocates.
+        // So that events do not allocate columns.
         self.positions.reserve(events);
+        self.signs.reserve(events);
         self.factor.reserve(events * watched);
     }
 
@@ -160,7 +161,7 @@ impl WindowFactor {
         Ok(&self.factor[start..])
     }
 
-    /// Forgets all but the first events. The Schur complement may be that of more.
+    /// Forgets all but the first events. No event can follow if more have been subtracted from the Schur complement.
     pub(crate) fn truncate(&mut self, events: usize) {
         self.positions.truncate(events);
         self.signs.truncate(events);

@@ -228,6 +228,48 @@ fn no_adhesion_is_the_elastic_path() {
     }
 }
 
+/// Behind full contact and between two events of the elastic path, of several targets the first one reached counts.
+#[test]
+fn without_adhesion_the_first_target_counts() {
+    let grid = Grid::square(6, 1.0).unwrap();
+    let kernel = PeriodicBoussinesq::new(grid, 1.0).unwrap();
+    let surface = surface();
+    let mut path = AdhesivePath::builder(&surface, &kernel, Adhesion::work(0.0)).build().unwrap();
+    let states = run(&mut path);
+    let [.., before, full] = &states[..] else { panic!() };
+    let [before, full] = [before, full].map(|state| state.contact.load);
+    let mut end_of = |targets: &[ContactTarget]| {
+        path.unload().unwrap();
+        run(&mut path);
+        path.load_to_first_of(targets).unwrap();
+        let last = *run(&mut path).last().unwrap();
+        assert_eq!(path.end(), Some(AdhesiveEnd::Target), "{targets:?}");
+        last.contact
+    };
+    let loads =
+        |parts: [f64; 2]| parts.map(|part| ContactTarget::Load(before + part * (full - before)));
+    for (parts, first) in [([0.75, 0.5], 0.5), ([0.25, 0.5], 0.25), ([3.0, 2.0], 2.0)] {
+        let load = end_of(&loads(parts)).load;
+        assert!((load / (before + first * (full - before)) - 1.0).abs() < 1e-12, "{parts:?}");
+    }
+    // All areas are reached, and approaches do not change there.
+    let area = ContactTarget::AreaFraction(1.0);
+    assert_eq!(end_of(&[area]).contact_nodes, 36);
+    assert_eq!(end_of(&[loads([2.0; 2])[0], area]).load, full);
+}
+
+/// A load of nothing is the difference of pulls and pushes that are not: it is met exactly.
+#[test]
+fn no_load_is_exactly_none() {
+    let mut path = path(Some(ContactTarget::Load(3e-4)));
+    run(&mut path);
+    path.unload_to(ContactTarget::Load(0.0)).unwrap();
+    let last = *run(&mut path).last().unwrap();
+    assert_eq!((path.end(), last.event), (Some(AdhesiveEnd::Target), AdhesiveEvent::Limit));
+    assert!(last.soft_nodes > 0);
+    assert_eq!(last.contact.load, 0.0);
+}
+
 /// A state of the same number on another path, and one of the same approach with another load.
 #[test]
 fn states_of_another_path_are_refused() {

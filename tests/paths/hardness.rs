@@ -113,8 +113,16 @@ fn surface(name: &str) -> HeightMap {
 
 fn all<U: LinearUpdater>(builder: LoadingBuilder<'_, U>) -> Vec<LoadingState> {
     let mut path = builder.build().unwrap();
-    let states = path.by_ref().collect::<Result<Vec<_>, _>>().unwrap();
+    let (mut states, mut hints) = (Vec::new(), vec![path.size_hint()]);
+    while let Some(state) = path.next() {
+        states.push(state.unwrap());
+        hints.push(path.size_hint());
+    }
     assert_eq!(path.end(), Some(LoadingEnd::FullyPlastic));
+    for (k, (least, most)) in hints.into_iter().enumerate() {
+        let left = states.len() - k;
+        assert!(least <= left && most.is_some_and(|most| most >= left), "{k}: {left} of {most:?}");
+    }
     states
 }
 
@@ -259,6 +267,12 @@ fn two_nodes_by_hand() {
     // The plateau begins where its load is reached; along it the approach tells the states apart.
     assert_eq!(history.at_load(0.375).unwrap().contact.approach, 1.5);
     let along = history.at_approach(1.625).unwrap().contact;
+    // Of two limits on the plateau the one that the approach comes to first.
+    let limits = [ContactTarget::Approach(1.7), ContactTarget::MeanGap(along.mean_gap)];
+    let mut path = limits.into_iter().fold(builder(), |path, limit| path.until(limit)).build();
+    let last = path.as_mut().unwrap().by_ref().last().unwrap().unwrap();
+    assert_eq!(path.unwrap().end(), Some(LoadingEnd::MeanGap));
+    assert!((last.contact.approach - 1.625).abs() < 1e-14, "{last:?}");
     let plastic = along.plastic.unwrap();
     assert_eq!((along.load, along.mean_gap, plastic.volume), (0.375, 0.0625, 0.125));
     assert_eq!(plastic.work, 0.375 * 0.125);

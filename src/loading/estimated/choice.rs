@@ -14,7 +14,7 @@ pub(super) struct Candidates {
     pub(super) nodes: Ranking,
     /// Nothing happens to another node before this time.
     pub(super) horizon: f64,
-    /// Set if more nodes have their events at this time than can be watched.
+    /// The first time, if more nodes have their events then than were to be watched.
     pub(super) group: Option<f64>,
 }
 
@@ -88,7 +88,7 @@ pub(super) fn cut(
     (kept, 0.5 * (events[kept - 1].time + next(kept)))
 }
 
-/// So many events, and what ties with the last of them.
+/// The number of the first events, up to `most`, and of those that tie with the last of them.
 pub(super) fn with_ties(
     events: &[WindowEvent],
     most: usize,

@@ -44,7 +44,7 @@ struct Course {
     times: Vec<f64>,
     /// Their pressures then, as many as have touched before.
     pressures: Vec<Vec<f64>>,
-    /// What their pressures grow by at the end.
+    /// The rates of their pressures at the end.
     rates: Vec<f64>,
 }
 
@@ -68,8 +68,8 @@ impl AtStart {
         }
     }
 
-    /// Until when no pressure was negative, of those that are at the solution on a contact at an approach after a time;
-    /// `None` if none is.
+    /// The time up to which no pressure was negative, by lines from the start to the solution on a contact at an
+    /// approach, which is that after `time`; `None` if none is negative there.
     pub(super) fn sound_until(
         &self,
         run: &LoadingRun,
@@ -281,9 +281,9 @@ impl Course {
         f64::INFINITY
     }
 
-    /// By how much the gap of any node may be below the chord from the beginning to the end, at each time: with what
-    /// pressures differ from theirs by, `|S_oj δp_j| ≤ √(S_oo δpᵀ S δp)` for S is positive definite, and S_oo is no
-    /// greater than C(0, 0).
+    /// By how much the gap of any node may be below the chord from the beginning to the end, at each time. With δp, the
+    /// pressures less the chord of theirs, it is `|S_oj δp_j| ≤ √(S_oo δpᵀ S δp)` at most, for S is positive definite,
+    /// and S_oo is no greater than C(0, 0).
     fn bounds(&self, schur: &Schur, self_influence: f64) -> Vec<f64> {
         let (span, end) = (self.span(), &self.pressures[self.times.len() - 1]);
         let bound = |(time, pressures): (&f64, &Vec<f64>)| {

@@ -1,9 +1,8 @@
 //! Events in windows, without a factor: with a matrix that is nearly exact.
 //!
-//! The order of events inside a window rests on small changes only, so that a matrix that is nearly right gives nearly
-//! the right order. The exact solution at the window's end, which the next window needs anyway, then corrects it, and
-//! the same events are played a second time. What is still closer than the remaining error is settled by one exact
-//! solution each.
+//! Gaps change little inside a window, so that a matrix that is nearly right gives nearly the right order of events.
+//! The exact solution at the window's end, which the next window needs anyway, then corrects it, and the same events
+//! are played a second time. What is still closer than the remaining error is settled by one exact solution each.
 
 pub(super) mod choice;
 pub(super) mod leaving;
@@ -44,16 +43,16 @@ pub(super) struct Estimated {
     size: usize,
     /// Whether events that are too close to be told apart get a solution of their own.
     settles: bool,
-    /// The nodes to which something may happen by the time when it would if nothing else came first, at the present
-    /// approach.
+    /// The nodes that may touch or yield, by the time at which they would from the present approach on if nothing else
+    /// came first.
     ranking: Ranking,
-    /// From when on nodes would yield that are not ranked.
+    /// The time at which the first node that is not ranked would yield.
     beyond: f64,
     /// Rates at the present approach.
     rates: Rates,
-    /// By how much pressures there may be off, in terms of what they displace.
+    /// By how much pressures there may be off, times what a unit pressure displaces \[m\].
     left: f64,
-    /// The contact and approach that all these belong to.
+    /// The revision of the contact, and the approach, that all these belong to.
     ranked: Option<(u64, f64)>,
     /// How far the last window went, and the span that the rates at hand serve.
     last_span: f64,
@@ -67,9 +66,9 @@ pub(super) struct Estimated {
 /// How a window ended.
 enum Outcome {
     Done,
-    /// A solution in it contradicted what was expected: the next one has fewer events. Nothing has changed.
+    /// A solution in it contradicted what was expected: the next one has fewer events. The path is as it was.
     TakenBack,
-    /// The next event is to have a solution of its own, where nodes may leave. Nothing has changed.
+    /// Only where nodes may leave: the next event needs a solution of its own. The path is as it was.
     Alone,
 }
 
@@ -91,8 +90,8 @@ impl Estimated {
         }
     }
 
-    /// Computes a window of states before the next node leaves, where nodes may. Without one nothing has happened to
-    /// the path.
+    /// Where nodes may leave: computes a window of states before the next one does. If none is made, the path is as it
+    /// was.
     pub(super) fn attempt(
         &mut self,
         run: &mut LoadingRun,
@@ -126,8 +125,8 @@ impl Estimated {
         Ok(attempt)
     }
 
-    /// Computes a window of states; none if no node is left to touch or to yield. A whole one, wherever the path is to
-    /// end: one that goes on behind that has the same windows.
+    /// Where nodes may not leave: computes a window of states; none if no node is left to touch or to yield. The window
+    /// does not depend on where the path is to end, so that a path continued beyond that has the same windows.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
@@ -145,7 +144,7 @@ impl Estimated {
             let window = self.propose(run, iterations, candidates, f64::INFINITY)?;
             match self.follow(run, iterations, &tolerances, &window)? {
                 Outcome::Done => return Ok(()),
-                // Only where nodes may leave is a window given up.
+                // `Alone` comes only where nodes may leave, which is not here.
                 Outcome::TakenBack | Outcome::Alone => run.timings.taken_back += 1,
             }
         }
@@ -203,7 +202,7 @@ impl Estimated {
         self.survey_late(run, tolerances, 0.0)
     }
 
-    /// The same where the approach has gone on by so much without events: gaps that closed on that way are overlaps.
+    /// The same after the approach has advanced by `late` without events: gaps may overlap by as much.
     fn survey_late(
         &mut self,
         run: &mut LoadingRun,
@@ -219,7 +218,7 @@ impl Estimated {
         self.survey_within(run, Slack { gap: slack.gap + late, ..slack })
     }
 
-    /// The same, where the solution may contradict by so much what contact that grows does.
+    /// The same with these bounds for what contradicts contact that grows.
     fn survey_within(&mut self, run: &mut LoadingRun, slack: Slack) -> Result<(), Error> {
         self.ranked = None;
         self.beyond = f64::INFINITY;
@@ -239,8 +238,8 @@ impl Estimated {
         Ok(())
     }
 
-    /// Opens a window on the candidates, with lines that are better known than those of the gap field, no longer than a
-    /// time.
+    /// Opens a window on the candidates, no longer than a time. Its lines are better than those of the gap field: the
+    /// iterations correct them by the residual of the solution.
     fn propose(
         &self,
         run: &mut LoadingRun,
@@ -289,7 +288,7 @@ impl Estimated {
         if is_of_touches {
             Watched::leave_out_pressures(&mut watched, &schur, horizon);
         }
-        // Beside nodes that yield others come sooner than their lines tell.
+        // Beside nodes that yield others touch or yield sooner than their lines tell.
         let may_yield = watched.iter().any(|watched| watched.hardness.is_finite());
         let trusted = if has_yielded || may_yield { TRUSTED * horizon } else { horizon };
         let horizon = trusted.min(longest);
@@ -386,7 +385,8 @@ impl Estimated {
                 return Ok(Outcome::Alone);
             }
             if kept > 1 {
-                // What joined or yielded without need says nothing of when that was.
+                // The rates may not tell when the contradiction began: at least one event fewer, but the first one
+                // stays.
                 let fewer = sooner.clamp(1, kept - 1);
                 (kept, time) = cut(events, horizon, fewer, tolerances);
             } else if !is_shortest {
@@ -398,8 +398,9 @@ impl Estimated {
         }
     }
 
-    /// How much earlier than the end of a window after `time`, where the solution is, the first of what contradicts it
-    /// was not yet, as far as rates tell; `None` if nothing does. A window that cannot be shorter may be off by more.
+    /// The time, from the end of a window after `time` on, at which the first contradiction of the solution there
+    /// began, as far as rates tell: not after 0; `None` if there is none. A window that cannot be shorter may be off by
+    /// more.
     fn contradicted(
         run: &LoadingRun,
         trial: &Trial,
@@ -418,7 +419,7 @@ impl Estimated {
         let [least, most] = slacks(run, (problem, contact), tolerances, approach);
         let found = |slack| contradiction(run, trial.set(run), (approach, slack));
         if !run.has_yielded() && trial.yielded.is_empty() {
-            // What is left of overlaps between touches the second pass puts right.
+            // The second pass corrects the overlaps that are left between touches.
             return found(most);
         }
         let until = found(least)?;
@@ -441,11 +442,11 @@ impl Estimated {
         let start = run.scalars.approach();
         let ends = at_end(run, window, (trial, start + time));
         let correction = correction::correct(window, &ends, time);
-        let settled = ties::second_pass(&correction, (first, first), time);
+        let settled = ties::second_pass(&correction, first, time);
         self.left_out = correction.left_out().max(REMEMBERED * self.left_out);
         let change = ties::mean_change(first, &settled.events, time);
         let most_change = MOST_CHANGE * time / first.len() as f64;
-        // Half of it, which may be all of it where events tie.
+        // A window cannot be halved if half of its events tie with all others: what is found then counts.
         let half = first.len() / 2;
         let is_certain =
             first.len() <= CERTAIN || with_ties(first, half, tolerances) >= first.len();
@@ -524,9 +525,9 @@ fn go_to(
     run.field.advance(&behind, iterations, span)
 }
 
-/// By how much the solution on a contact at an approach may contradict what contact that grows does: where the window
-/// can be shorter, and at all. What is left of gaps in contact says how far pressures are off, and gaps elsewhere: by
-/// less, for they see all of it from afar.
+/// How far the solution on a contact at an approach may be from what contact that grows does: in a window that can be
+/// shorter, and in one that cannot. The gaps that it leaves in contact tell how far pressures are off. Gaps elsewhere
+/// are off by less, for errors of pressures average out there.
 fn slacks(
     run: &LoadingRun,
     (problem, contact): (&Problem, &ContactSequence),

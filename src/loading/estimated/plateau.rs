@@ -34,9 +34,9 @@ impl Estimated {
             |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
-        // What their times cannot be told apart by.
+        // Times closer than this cannot be told apart.
         let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
-        // The same with what the solution at hand leaves open of them.
+        // The same with what pressures of the present solution may be off by.
         let open = group.iter().map(|&node| self.left / rate_of(node));
         let most_late = open.fold(error, f64::max);
         group.sort_unstable();
@@ -89,8 +89,8 @@ impl Estimated {
                 window.happen(position, 0.0).map_err(|bad| run.not_positive_definite(bad))?;
             }
             let trial = Trial::of(run, now)?;
-            // The approach goes on from the last of them only. However little is left open by so many nodes: rates must
-            // be exact there.
+            // The path goes on from the solution of the last window only. Rates must be exact there, even if so many
+            // nodes leave few gaps open.
             let is_last = left.is_empty();
             self.rate_span = if is_last { f64::INFINITY } else { 0.0 };
             go_to(run, iterations, &trial, (approach, self.rate_span))?;
@@ -105,7 +105,7 @@ impl Estimated {
             if is_last {
                 self.survey_late(run, tolerances, late)?;
             } else {
-                // Not all that happens there has happened.
+                // Events at this approach are still to come: until then their nodes may overlap.
                 self.survey_within(run, Slack::ANY)?;
             }
             rates.extend(completed(&before, &window.rates(before), &self.rates));
@@ -123,9 +123,9 @@ impl Estimated {
         tolerances: &WindowTolerances,
         (trial, approach, most_late): (&Trial, f64, f64),
     ) -> Result<f64, Error> {
-        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change
-        // far faster than what these were estimated from, so that depths that are negative then tell the time better:
-        // all of them are lines.
+        // The time of the group is the first of many estimates, and rather too early. Behind the events gaps and depths
+        // may change far faster than they did before, on lines: those that are negative tell the time better, by where
+        // they pass zero.
         let [_, most] =
             slacks(run, (trial.problem(&run.problem), &trial.contact), tolerances, approach);
         let late = lateness(run, trial, (approach, most));

@@ -18,11 +18,11 @@ pub(crate) struct EstimatedEnd {
     /// How far the last window went, and the span that the rates at hand serve.
     pub(crate) last_span: f64,
     pub(crate) rate_span: f64,
-    /// What windows are shortened by.
+    /// The part of a pivot that matrices were off by lately, which limits the events of a window.
     pub(crate) left_out: f64,
     /// How many nodes yielded in each window so far.
     pub(crate) yielded: Vec<usize>,
-    /// Behind an event with a solution of its own, which no window ends with: the scalars, sums over all events.
+    /// The scalars, sums over all events: only behind an event with a solution of its own, where no window ends.
     pub(crate) scalars: Option<[f64; 6]>,
     /// The solution, and what iterations go on from besides.
     pub(crate) kept: Kept,
@@ -76,7 +76,7 @@ impl Estimated {
         })
     }
 
-    /// Whether such windows were of the same rule.
+    /// Whether the windows before were made by the same rule.
     pub(in crate::loading) fn can_follow(&self, end: &EstimatedEnd) -> bool {
         self.settles == end.settles
     }

@@ -58,8 +58,8 @@ fn rates_of([unit_stiffness, closing, depth, work]: [f64; 4]) -> Rates {
     Rates { unit_stiffness, closing, plastic: [depth, work] }
 }
 
-/// Rates of events with what they lack at the end, where they are `exact`: in proportion to how much the events so far
-/// have changed them.
+/// Rates of events, corrected to end as they should, with `exact`: what they lack there is added in proportion to how
+/// much the events so far have changed them.
 pub(super) fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
     let (start, exact) = (numbers(start), numbers(exact));
     let events: Vec<[f64; 4]> = events.iter().map(numbers).collect();

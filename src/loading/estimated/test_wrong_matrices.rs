@@ -162,8 +162,8 @@ fn any_iterations_are_corrected() -> Result<(), Error> {
     Ok(())
 }
 
-/// Schur complements that are wrong by half let the wrong nodes join. The contact at the end of a window is
-/// mended until it contradicts nothing: at least there, the nodes in contact are those of the factor.
+/// Schur complements with pivots up to twice as great as they are let the wrong nodes join. Windows whose ends
+/// contradict that become shorter: at their ends at least, the nodes in contact are those of the factor.
 #[test]
 fn the_ends_of_windows_are_mended() -> Result<(), Error> {
     let (surface, kernels) = problems(20)?;
@@ -187,7 +187,7 @@ fn the_ends_of_windows_are_mended() -> Result<(), Error> {
             apart = if different.is_empty() { 0 } else { apart + 1 };
             longest = longest.max(apart);
         }
-        // The window, and what overlapped outside of it.
+        // No window has as many events.
         assert!(longest < 2 * window, "wrong for {longest} states");
         let timings = path.timings();
         for count in [timings.taken_back, timings.ties] {

@@ -133,7 +133,7 @@ fn a_kernel_that_is_not_positive_definite_names_the_node() -> Result<(), Error> 
     };
     // Solutions to 1e-10 of the length.
     assert!((approach / touches - 1.0).abs() < 1e-8, "{approach} {touches}");
-    // Complements without a factor come in single precision: rounding errors of 6e-8, a sum of 1.2 and a condition of 9.
+    // Complements without a factor are in single precision: rounding errors of 6e-8, a sum of 1.2 and a condition of 9.
     assert!((pivot - expected).abs() < 1e-6, "{pivot} {expected}");
     Ok(())
 }

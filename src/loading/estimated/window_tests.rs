@@ -76,7 +76,7 @@ fn rates_are_found_again_if_they_have_to_serve_much_further() -> Result<(), Erro
     Ok(())
 }
 
-/// Everything is known of the front after the beginning of a window, and found once.
+/// A window begins with a solution, the ranking and the scalars of the present approach, which are computed once.
 #[test]
 fn a_window_begins_with_a_solution() -> Result<(), Error> {
     let (mut run, mut iterations) =
@@ -90,7 +90,7 @@ fn a_window_begins_with_a_solution() -> Result<(), Error> {
     assert_eq!(estimated.ranked, Some((run.contact.revision(), 1.0)));
     let nodes: Vec<usize> = estimated.ranking.iter().map(|(_, node)| *node).collect();
     assert_eq!(nodes, [1, 2, 3]);
-    // What belongs to the front is left alone.
+    // What belongs to the present approach is left alone.
     estimated.ranking.clear();
     estimated.begin(&mut run, &mut iterations, &tolerances(1e-9))?;
     assert!(estimated.ranking.is_empty());

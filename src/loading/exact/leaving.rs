@@ -2,17 +2,17 @@
 //!
 //! Nodes only touch in such a window. Between two events every pressure and every gap is a line, so that its values at
 //! the events tell all. With the factor R of the Schur complement of the nodes J that touch at the times tⱼ, and what
-//! they close by as the others before them are eliminated, cⱼ (t − tⱼ) at the time t, the pressures of the contact I, and
-//! the gap of a node o that is neither watched nor in contact, are
+//! they close by as the others before them are eliminated, cⱼ (t − tⱼ) at the time t, the pressures of the contact I,
+//! and the gap of a node o that is neither watched nor in contact, are
 //!
 //! ```text
 //! p(t) = p(0) + t p'(0) − Σⱼ Bⱼ cⱼ (t − tⱼ),    B = C_II⁻¹ C_IJ R⁻ᵀ
 //! g(t) = g(0) + t g'(0) + Σⱼ wⱼ cⱼ (t − tⱼ),    w = R⁻¹ C_Jo − Bᵀ C_Io
 //! ```
 //!
-//! with sums h(t) over the events so far. A window ends with the last event before a pressure falls to zero. Of most nodes
-//! a bound says that they stay open, for h is known at the end T, and the squares of w sum to S_oo at most, which is no
-//! greater than C(0, 0): with any α and β
+//! with sums h(t) over the events so far. A window ends with the last event before a pressure falls to zero. Most nodes
+//! stay open by a bound: h is known at the end T, and the squares of w sum to S_oo at most, which is no greater than
+//! C(0, 0), so that with any α and β
 //!
 //! ```text
 //! |h(t) − α h(T) − β h'(T)|² ≤ C(0, 0) Σⱼ cⱼ² ((t − tⱼ)₊ − α (T − tⱼ) − β)²
@@ -31,7 +31,7 @@ use crate::loading::window::Window;
 use crate::parallel;
 use crate::updater::{Solution, WindowFactor};
 
-/// Gaps that are looked at together: at the speed of a matrix product.
+/// Gaps that are looked at together, at the speed of a matrix product.
 const AT_ONCE: usize = 96;
 
 /// Pressures and gaps when a window begins, and how its events change them.
@@ -108,8 +108,8 @@ impl AtStart {
         self.times.len()
     }
 
-    /// How many of the first `count` events come before a node that is not watched touches, when these have joined and the
-    /// solution is that at the last of them.
+    /// How many of the first `count` events come before a node that is not watched touches, when these have joined and
+    /// the solution is that at the last of them.
     pub(super) fn before_others(
         &self,
         run: &LoadingRun,

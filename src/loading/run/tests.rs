@@ -121,16 +121,16 @@ fn tension_beyond_rounding_is_found() -> Result<(), Error> {
         (8.1e-10, 4e-10, true),
     ] {
         let run = test_chain::solved(&[0.0, 8.0, 4.0 + x], &[0, 2], 4.0)?;
-        let found = run.negative_pressure(run.contact.len(), (4.0, overlap));
+        let found = run.negative_pressure(4.0, overlap);
         assert_eq!(found.map(|(node, _)| node), is_found.then_some(2), "{x:e}");
         // A hundredth further it is pressure.
-        assert!(run.negative_pressure(run.contact.len(), (4.01, overlap)).is_none());
+        assert!(run.negative_pressure(4.01, overlap).is_none());
     }
     let mut run = test_chain::run(&[0.0, 8.0])?;
     run.contact.push(0)?;
     let mut given = Altered::given(vec![f64::NAN], vec![1.0]);
     run.advance_field(&mut given, 1.0, 1.0)?;
-    assert!(run.negative_pressure(run.contact.len(), (1.0, 0.0)).is_some());
+    assert!(run.negative_pressure(1.0, 0.0).is_some());
     Ok(())
 }
 

@@ -6,7 +6,8 @@ use super::{Course, Window};
 use crate::loading::tuning::{CERTAIN, LEAST_DETERMINANT, OF_LEFT_OUT};
 use crate::updater::Schur;
 
-/// The gap line of a watched node by the solution at a window's end, and its error.
+/// Pressure and gap of a watched node, with their rates, by the solution at a window's end. Of a node that was in
+/// contact when the window began it is overlap and pressure in their places.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::loading) struct AtEnd {
     /// Pressure and its rate: 0 if the node is out of contact.
@@ -15,7 +16,7 @@ pub(in crate::loading) struct AtEnd {
     pub(in crate::loading) gap: [f64; 2],
 }
 
-/// A window that explains its end.
+/// A window that ends as the solution there says.
 #[derive(Debug)]
 pub(in crate::loading) struct Correction {
     /// With a corrected Schur complement, and courses for what is still missing at the end.
@@ -101,11 +102,11 @@ fn complete(target: &mut Window, window: &Window, ends: &[AtEnd], time: f64) {
     target.set_courses(courses.into_iter());
 }
 
-/// Updates the Schur complement of a window whose courses end as they should; false if the result is none: then the
-/// window is of no use.
+/// Updates the Schur complement of a window whose courses end as they should; false, and nothing has changed, if `WᵀV`
+/// has no inverse.
 fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     let t = time;
-    // −V: what the lines and S̃ lack at the end, both columns in the unit of a rate.
+    // V, minus what the lines and S̃ lack at the end, both columns in the unit of a rate.
     let missing: Vec<Vector2<f64>> = window
         .courses()
         .map(|Course { curve: [c2, c3], .. }| {
@@ -133,7 +134,7 @@ fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
 /// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction;
 /// `None` if it is not positive semidefinite.
 fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
-    // Where one of the diagonal is not positive, neither this nor the determinant is a number.
+    // Where one of the diagonal is not positive, neither this nor the determinant is a finite number.
     let roots = [products[(0, 0)].sqrt(), products[(1, 1)].sqrt()];
     let correlation = products[(0, 1)] / (roots[0] * roots[1]);
     let determinant = 1.0 - correlation * correlation;

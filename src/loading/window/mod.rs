@@ -13,7 +13,7 @@ use super::tuning::{BORDERED, EXACT_TIE};
 use crate::updater::{Schur, WindowFactor};
 pub(super) use course::Course;
 
-/// A node to watch where nodes may yield.
+/// A node to watch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Watched {
     pub(super) node: usize,
@@ -79,17 +79,17 @@ pub(super) struct BadPivot {
     pub(super) pivot: f64,
 }
 
-/// A condition that a watched node may come to: its gap to nothing, or its pressure to its hardness.
+/// The condition of an event: the gap of a watched node falls to zero, or its pressure rises to its hardness.
 #[derive(Debug, Clone, Copy)]
 struct Row {
     position: usize,
     kind: ContactEvent,
-    /// Value that its course comes to.
+    /// The value of its course at the event.
     limit: f64,
     /// Gap or pressure, from which the events so far are eliminated; and so from the sums.
     course: Course,
     sums: [f64; SUMS],
-    /// Whether it has yet to come to it, and is in the state to do so.
+    /// Whether the event may still happen: a node yields only once it has touched.
     is_open: bool,
 }
 
@@ -134,8 +134,8 @@ pub(super) struct Window {
     /// What each event adds to `eᵀ C_II⁻¹ e`, takes off the sum of closing rates, and adds to the rates of plastic
     /// sums.
     increments: Vec<Rates>,
-    /// The stiffness behind each event where all elastic nodes are watched: the sum of their rates. Where few are left
-    /// of many, what events take from it is no use.
+    /// The stiffness behind each event where all elastic nodes are watched: the sum of their rates. Where few of many
+    /// nodes are left, the stiffness less what events take from it would be rounding.
     stiffnesses: Option<Vec<f64>>,
 }
 
@@ -180,7 +180,7 @@ impl Window {
         self.increments.reserve(size);
     }
 
-    /// Opens a window on nodes that may yield, and begins, with the matrix M of
+    /// Opens a window on nodes that may touch or yield, and begins, with the matrix M of
     /// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both) as it has been filled. `elastic` nodes
     /// are in contact. Of nodes out of contact that have a finite hardness pressures are watched as well.
     pub(super) fn begin_both(&mut self, at: (f64, f64), watched: &[Watched], elastic: usize) {
@@ -385,8 +385,8 @@ impl Window {
         answers
     }
 
-    /// The same times the transposed factor: where nodes only touch, products of two of these are those of the pressures
-    /// by the Schur complement.
+    /// The same times the transposed factor: where nodes only touch, products of two of these are those of the
+    /// pressures by the Schur complement.
     pub(super) fn reduced(&self, count: usize, time: f64) -> Vec<[f64; 2]> {
         let own = self.eliminated.iter().zip(self.factor.positions()).enumerate().take(count);
         let own = own.map(|(event, (course, &row))| {
@@ -522,7 +522,7 @@ impl Window {
         self.truncate(events);
     }
 
-    /// Forgets all but the first events. Their nodes are not watched any more.
+    /// Forgets all but the first events. The nodes of the others are not watched any more.
     pub(super) fn truncate(&mut self, events: usize) {
         self.events.truncate(events);
         self.eliminated.truncate(events);

@@ -49,10 +49,10 @@ impl Question<'_> {
 }
 
 /// Plays the events of a window with its corrected matrix, and estimates their errors. `first` is what the events were
-/// in the first pass, `happened` those that its end did not contradict, and it ends after `time`.
+/// in the first pass, and it ends after `time`.
 pub(in crate::loading) fn second_pass(
     correction: &Correction,
-    (first, happened): (&[WindowEvent], &[WindowEvent]),
+    first: &[WindowEvent],
     time: f64,
 ) -> Settled {
     let Correction { window, by_courses, is_updated } = correction;
@@ -63,8 +63,8 @@ pub(in crate::loading) fn second_pass(
         window.events().to_vec()
     };
     let mut events = pass(window);
-    events.retain(|event| happened.iter().any(|other| other.is(event)));
-    for event in happened {
+    events.retain(|event| first.iter().any(|other| other.is(event)));
+    for event in first {
         if !events.iter().any(|other| other.is(event)) {
             events.push(WindowEvent { time, ..*event });
         }
@@ -267,7 +267,7 @@ impl Ties<'_> {
         let Some(mut here) = self.eliminated(first, &positions, &values)? else {
             return Ok(Some(last + 1));
         };
-        // Some may lie a little behind.
+        // Some gaps may have closed a little before.
         let own = (0..positions.len()).filter_map(|place| here.own_time(place));
         let back = 2.0 * own.fold(0.0, f64::min);
         here.move_back(-back);
@@ -308,7 +308,7 @@ impl Ties<'_> {
         }
         self.settled.events[first..=last].copy_from_slice(&events);
         self.make_orbits_equal(first..last + 1);
-        // Far behind the solution it may not be enough, or the solution was not exact enough.
+        // Far behind the solution its errors may be too great to settle the rest, or it was not exact enough.
         let again = (first + usize::from(exact)..last).find(|&event| {
             let spacing = self.settled.events[event + 1].time - self.settled.events[event].time;
             (spacing > self.tolerances.tie || !exact) && self.is_close(event)

@@ -80,7 +80,7 @@ const BRANCHES: [Direction; 2] = [Direction::Loading, Direction::Unloading];
 const NODES: [NodeState; 5] =
     [NodeState::Open, NodeState::Soft, NodeState::Cohesive, NodeState::Contact, NodeState::Held];
 
-/// The number of one of several in a file.
+/// The number that stands for a value in a file: its place among all.
 fn code<T: PartialEq>(all: &[T], one: &T) -> usize {
     all.iter().position(|other| other == one).unwrap_or(all.len())
 }

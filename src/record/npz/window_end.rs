@@ -48,16 +48,16 @@ const WHOLE: usize = 5;
 /// Numbers of a state on what has yielded.
 const PLASTIC: usize = 1 + PLASTIC_COLUMNS.len();
 
-/// What sums answer beside nodes that have yielded, and its displacements.
+/// Responses of the three sums beside nodes that have yielded, and the displacements under them.
 const BESIDE: [[&str; 2]; 3] = [
     ["window_gap_sums", "window_gap_sums_displacement"],
     ["window_depth_sums", "window_depth_sums_displacement"],
     ["window_work_sums", "window_work_sums_displacement"],
 ];
-/// What nodes that had yielded displaced then.
+/// Displacements under the nodes that had yielded before the window.
 const UNDER: [&str; 2] = ["window_unit_displacement", "window_load_displacement"];
 
-/// What is not an array.
+/// The part of a window's end that is no array.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Numbers {
     handed_over_at: Option<usize>,
@@ -271,7 +271,7 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
     let states = ahead.chunks_exact(width).map(|row| {
         let nodes = whole(row[3]);
         let contact = ContactState::new(grid, nodes, 0.0, 0.0, 0.0);
-        // What is no event is none that a window has.
+        // An unknown code becomes an event that no window has.
         let event = event(row[4]).unwrap_or(crate::ContactEvent::Limit);
         let node = (whole(row[1]), whole(row[2]));
         let mut state = LoadingState::new(whole(row[0]), event, node, contact);

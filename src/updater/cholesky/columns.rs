@@ -27,8 +27,8 @@ use crate::updater::tuning::{CACHED_ROWS, LANES, ROWS, UNIT, WIDTH};
 pub(super) struct Columns {
     rows: usize,
     blocks: Vec<Block>,
-    /// Room of blocks that are no more, for those to come: pages that are new to a process cost as
-    /// much as a tenth of the products.
+    /// Buffers of blocks that are gone, for new ones: pages that are new to a process cost as much as a tenth of the
+    /// products.
     spare: Vec<Vec<f64>>,
 }
 
@@ -63,8 +63,8 @@ impl Columns {
             .map_or(usize::MAX, |values| values.saturating_mul(size_of::<f64>()))
     }
 
-    /// Room for so many rows, rounded up, and no more, and none yet: a little too large, it is large enough
-    /// for the windows that follow.
+    /// An empty buffer with room for so many rows, rounded up: a little too large now, it is large enough for the
+    /// windows that follow.
     fn room(&mut self, rows: usize, width: usize) -> Vec<f64> {
         let values = rows.next_multiple_of(ROWS) * width;
         let spare = self.spare.iter().enumerate();
@@ -188,8 +188,8 @@ impl Columns {
         }
     }
 
-    /// `L⁻ᵀ F` for the columns at some positions. Columns are independent, so that the result does not depend on how many
-    /// threads share them.
+    /// `L⁻ᵀ F` for the columns at some positions. Columns are independent, so that the result does not depend on how
+    /// many threads share them.
     pub(super) fn solved_backwards(&self, factor: &Panels, positions: &[usize]) -> DMatrix<f64> {
         let rows = factor.rows();
         let mut solved = DMatrix::zeros(rows, positions.len());

@@ -81,7 +81,7 @@ impl RecursiveCholesky {
         schur: &mut Schur,
     ) -> Result<(), Error> {
         self.factor.eliminate(problem, contact, watched, known, schur)?;
-        // Row sums are not asked for.
+        // For the nodes that join later. The row sums of `schur` are not asked for.
         self.reduced.clear();
         self.reduced.extend(watched.iter().map(|&(node, position)| {
             position.map_or_else(|| problem.rhs(node), |_| [0.0; Problem::RHS])

@@ -16,7 +16,7 @@ pub(super) fn reading(rows: usize, columns: usize) -> usize {
     16 * rows * columns
 }
 
-/// A rotation of all rows for each column and each of so many others: three products of a pair.
+/// A rotation of all rows for each pair of a column and one of so many others: three products each.
 pub(super) fn rotations(rows: usize, columns: usize, others: usize) -> usize {
     3 * rows * columns * others
 }

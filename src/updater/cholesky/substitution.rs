@@ -11,7 +11,7 @@ use super::products::subtract_transposed;
 use crate::parallel::{self, vectorized};
 use crate::updater::tuning::{COLUMNS_AT_ONCE, GROUP, ROWS, SMALL};
 
-/// Rows of such a group.
+/// Rows of a group of panels.
 const GROUP_ROWS: usize = GROUP * ROWS;
 
 impl Panels {

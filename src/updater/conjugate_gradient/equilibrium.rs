@@ -18,7 +18,7 @@ pub(super) struct Equilibrium {
 }
 
 impl Field {
-    /// One less the mean displacement: the mean closing rate of the gaps if this is a rate.
+    /// 1 less the mean displacement: the mean closing rate of the gaps if this is a rate.
     pub(super) fn open(&self) -> f64 {
         let nodes = self.displacement.len().max(1) as f64;
         1.0 - self.displacement.iter().sum::<f64>() / nodes

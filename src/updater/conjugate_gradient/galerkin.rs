@@ -8,8 +8,8 @@ use super::tuning::{FAR, POINTS};
 use crate::kernel::KernelTable;
 use crate::{Boundary, Grid, Problem, parallel};
 
-/// What a watched node does to pressures: of one out of contact unit pressure and the answer of the contact near it,
-/// `e_j − x_j`; of one in contact what its overlap takes off that contact, `−x_q`.
+/// Pressures that go with a watched node: out of contact a unit pressure on it and the answer of the contact near it,
+/// `e_j − x_j`; in contact the answer to its overlap, `−x_q`.
 struct Source {
     /// (place in the table, pressure) of all nodes, by the first.
     near: Vec<(usize, f64)>,
@@ -55,7 +55,7 @@ pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
 /// near one of them are near most of the others too.
 type Displacements = HashMap<usize, f64, BuildHasherDefault<OfPlace>>;
 
-/// Spreads places, which are no one's choice.
+/// A hash of places. They come from the grid and not from outside, so that a fast one does.
 #[derive(Default)]
 struct OfPlace(u64);
 
@@ -205,7 +205,7 @@ fn distance(grid: Grid, boundary: Boundary, a: [f64; 2], b: [f64; 2]) -> f64 {
     dx.hypot(dy)
 }
 
-/// Up to four points between the least and the greatest offset along an axis.
+/// Up to [`POINTS`] points between the least and the greatest offset along an axis.
 #[derive(Default)]
 struct Axis {
     points: [i32; POINTS],

@@ -4,8 +4,8 @@ use super::tuning::MOST;
 
 /// Instants of a window at which the pressure is known, and what the local solutions left out of it there.
 ///
-/// That grows from nothing as nodes join, and the more pressure they take the more it is: in between it is
-/// interpolated by the sum of their pressures. It makes a start for solutions inside the window, from both sides.
+/// The part left out grows from nothing with the pressure of the nodes that join. Between two instants it is
+/// interpolated by the sum of these pressures, and makes a start for solutions there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Instants {
     /// By the sum of pressures.
@@ -53,7 +53,7 @@ impl Instants {
         let place = self.known.partition_point(|other| other.sum < sum);
         self.known.insert(place, instant);
         if self.known.len() > MOST {
-            // Ties are settled in the order of time.
+            // Near ties are settled from first to last: the least sum is needed no more.
             self.known.remove(0);
         }
     }

@@ -377,7 +377,7 @@ impl LinearUpdater for ConjugateGradient {
         Ok(())
     }
 
-    /// On a grid that is not known before the first call.
+    /// Of the contact alone before the first call, when the grid is not known.
     fn bytes(&self, contact: usize, _watched: usize) -> usize {
         let nodes = self.solutions.as_ref();
         Self::bytes_of(nodes.map_or(0, |known| known.grid().nodes()), contact)
@@ -394,7 +394,7 @@ fn inside_of(
     inside(|| solutions.respond(criteria, problem, contact, rhs))
 }
 
-/// `Ok` if a contact has `count` nodes.
+/// `Ok` if a contact has at least `count` nodes.
 fn check_prefix(contact: &ContactSequence, count: usize) -> Result<(), Error> {
     check_count(contact.len(), count.max(contact.len()))
 }

@@ -34,7 +34,7 @@ fn rhs(problem: &Problem, beside: &Beside<'_>, which: usize, node: usize) -> f64
     }
 }
 
-/// Which fields are not those of another one.
+/// Which fields have to be solved for: the others follow from one of these.
 fn needed(beside: &Beside<'_>) -> [bool; SUMS] {
     [beside.row_sum.is_none(), true, beside.hardness.is_none()]
 }
@@ -45,7 +45,7 @@ impl PlasticSums {
         Self { fields, under }
     }
 
-    /// What [`Self::of_parts`] makes it again of; `None` where it is only a start.
+    /// The arguments of [`Self::of_parts`] that restore it; `None` where it is only a start.
     pub(super) fn parts(&self) -> Option<(&[Field; SUMS], &[Vec<f64>; 2])> {
         let are_known = self.under.iter().all(|under| !under.is_empty());
         are_known.then_some((&self.fields, &self.under))
@@ -77,7 +77,8 @@ impl PlasticSums {
                     let more = |k: usize, node: usize| {
                         [beside.unit, beside.load][k][node] - self.under[k][node]
                     };
-                    // Nodes that have yielded since are a load on the others: of 1 less the row sums, of theirs more.
+                    // Nodes that have yielded since are a load on the others: row sums fall by what a pressure of 1 on
+                    // them displaces, and displacements under 1 or under their hardness grow.
                     let sign = if which == 0 { 1.0 } else { -1.0 };
                     let given = |pressure: f64| if which == 2 { -pressure } else { sign };
                     let fixed: Vec<(usize, f64)> =

@@ -1,4 +1,4 @@
-//! The proposed nodes, and what their matrix says of them once something has happened to some.
+//! The proposed nodes, and by their matrix how they answer once some have joined or yielded.
 
 use super::equilibrium::Equilibrium;
 use super::galerkin;
@@ -162,8 +162,8 @@ impl Proposed {
         true
     }
 
-    /// The pressures of a field, after a change that makes displacements in contact `rhs`, as far as local solutions
-    /// tell; and how far nodes have given way, in units of a length, which grows from nothing.
+    /// The pressures of a field after a change, with displacements in contact of `rhs`, as far as local solutions tell;
+    /// and the sum of what nodes that joined bear and of what yielded ones give way, as a length, which grows from 0.
     pub(super) fn carried(
         &self,
         problem: &Problem,
@@ -208,8 +208,8 @@ impl Proposed {
         (pressure, way)
     }
 
-    /// Improves what a solution says of the proposed nodes, after a change since: pressures of those that joined or have
-    /// not yielded, and displacements of the others.
+    /// Improves what a solution says of the proposed nodes, after a change since: pressures of those that joined or
+    /// have not yielded, and displacements of the others.
     pub(super) fn improve(
         &self,
         problem: &Problem,

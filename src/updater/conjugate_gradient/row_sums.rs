@@ -14,7 +14,7 @@ use crate::{Error, Problem};
 /// `C_II⁻¹ s_I` for the row sums s of C.
 #[derive(Debug, Clone)]
 pub(super) struct RowSums {
-    /// On the first so many nodes.
+    /// How many nodes of the contact, the first ones, `field` is the solution on.
     count: usize,
     field: Field,
     /// The same on the whole contact, as far as local solutions tell: a start.
@@ -32,7 +32,7 @@ impl RowSums {
         Self { count, field, start }
     }
 
-    /// What [`Self::of`] makes it again of, besides [`Self::count`].
+    /// The arguments of [`Self::of`] that restore it, besides [`Self::count`].
     pub(super) fn parts(&self) -> (&Field, &[f64]) {
         (&self.field, &self.start)
     }
@@ -55,7 +55,8 @@ impl RowSums {
             }
             // Nodes that joined without being proposed are not in the start.
             let follows = proposed.carry_row_sums(contact, &mut self.start);
-            // The fewer nodes are out, the more of what is left of their row sums each new one takes.
+            // The fewer nodes are out of contact, the greater the part of their remaining row sums that a new one
+            // takes.
             let left = problem.grid().nodes() - contact.len();
             if follows && STALE * new < contact.len().min(left) {
                 return Ok(());

@@ -25,14 +25,15 @@ pub(super) struct Solutions {
     solver: Solver,
     neighbourhood: Neighbourhood,
     now: Equilibrium,
-    /// Where the last window began: its prefixes start from there. On these nodes.
+    /// Where the last window began: solutions inside it start from there.
     before: Option<Equilibrium>,
+    /// The nodes in contact then.
     solved_before: Vec<usize>,
     instants: Instants,
     proposed: Proposed,
-    /// What has happened to them since.
+    /// What has happened since they were proposed.
     passage: Option<Passage>,
-    /// Whether nodes may yield: what sums answer to proposed nodes.
+    /// Whether nodes may yield: then `plastic_sums` are followed, and otherwise `sums`.
     may_yield: bool,
     sums: RowSums,
     plastic_sums: PlasticSums,
@@ -130,8 +131,8 @@ impl Solutions {
         self.now.count
     }
 
-    /// Proposes nodes out of contact, and nodes in it, which may yield: returns their matrix M, and the displacements and
-    /// pressures of the present solution and its rate, improved. With `beside` nodes may yield.
+    /// Proposes nodes out of contact, and nodes in it, which may yield: returns their matrix M, and the displacements
+    /// and pressures of the present solution and its rate, improved. With `beside` nodes may yield.
     pub(super) fn propose(
         &mut self,
         criteria: Criteria,
@@ -385,7 +386,7 @@ impl Solutions {
             max_iterations,
         };
         let mut base = from.load_at(approach);
-        // In terms of the problem before, whose nodes were not a load yet.
+        // In the problem before, in which the nodes that yield were not a load yet.
         let overlap_before =
             |node: usize| overlap(node) + behind.load.get(node).copied().unwrap_or(0.0);
         let (mut start, way) =
@@ -400,7 +401,7 @@ impl Solutions {
             self.instants.complete(way, &mut start);
         }
         if yields {
-            // What was left out of nodes that join later only is not in contact yet.
+            // What was left out includes nodes that join later, which are not in contact yet.
             for (node, value) in start.iter_mut().enumerate() {
                 if !contact.contains(node) {
                     *value = 0.0;

@@ -42,7 +42,7 @@ fn errors_are_what_the_passes_differ_by() {
     let mut correction = correction(&window, &DMatrix::identity(5, 5));
     correction.window.set_courses(of([1.25, 3.5, 4.0, 4.5, 3.0]));
     correction.by_courses.set_courses(of([1.25, 3.0, 4.0, 4.5, 3.0]));
-    let settled = second_pass(&correction, (&first, &first), 4.0);
+    let settled = second_pass(&correction, &first, 4.0);
     // What has not touched by the end is put there.
     let expected = [(0, 1.25), (1, 3.5), (2, 4.0), (3, 4.0)];
     assert_eq!(pairs(&settled.events), expected);
@@ -53,12 +53,12 @@ fn errors_are_what_the_passes_differ_by() {
     close(&settled.errors, &of_rates([0.081_25, 1.0, 0.056_25, 8.0]));
     // Half of the changes.
     correction.is_updated = false;
-    let settled = second_pass(&correction, (&first, &first), 4.0);
+    let settled = second_pass(&correction, &first, 4.0);
     close(&settled.errors, &of_rates([0.406_25, 1.031_25, 0.281_25, 8.0]));
     // Where all agree, a thousandth of the mean spacing: 4 over 2.
     let same = events(&[(0, 1.25), (1, 3.0)]);
     correction.window = correction.by_courses.clone();
-    let settled = second_pass(&correction, (&same, &same), 4.0);
+    let settled = second_pass(&correction, &same, 4.0);
     let rates = [1.25 / 0.5, 3.0 / 0.25].map(|time| 5e-7 * time);
     close(&settled.errors, &[0.002 + rates[0], 0.002 + rates[1]]);
 }
@@ -232,8 +232,8 @@ fn ties_come_in_the_order_of_their_nodes() {
     assert_eq!(pairs(&events), expected);
 }
 
-/// A twenty-fifth of the least error, 0.001 25, times the least rate, 0.5; of a thousandth of the approach, 1 + 2, where
-/// all errors are greater; none if that was not enough.
+/// A twenty-fifth of the least error, 0.001 25, times the least rate, 0.5; of a thousandth of the approach, 1 + 2,
+/// where all errors are greater; none if that was not enough.
 #[test]
 fn solutions_are_as_exact_as_errors_ask() {
     let events = [(0, 1.0), (1, 2.0), (2, 3.0), (3, 4.0)];

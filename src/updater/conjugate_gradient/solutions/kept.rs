@@ -42,7 +42,7 @@ impl Solutions {
             beside,
             ..Kept::default()
         };
-        // Elsewhere no one asks for them.
+        // They are not used elsewhere.
         if has_directions(problem, &all) {
             all.directions = self.directions.values().map(<[f32]>::to_vec).collect();
             all.marks = self.directions.marks();
@@ -71,7 +71,7 @@ impl Solutions {
         })
     }
 
-    /// What they were, on a contact.
+    /// The solutions that were kept, on the same contact.
     ///
     /// # Errors
     ///

@@ -64,9 +64,9 @@ fn check_events(settled: &Settled, expected: &[(usize, f64)]) {
 
 #[test]
 fn close_events_are_settled_by_their_gaps() -> Result<(), Error> {
-    // At the approach 3 node 4 touches, and the gap of node 2, 1/16, closes after 1/8. Errors of 1/4 are poor there: gaps
-    // may be off by 0.04 · 10⁻³ · 3 · 0.5 and 2 · 10⁻³ · 3, that is by 0.006 06; over the rates, and with 0.05 of 1/8 for
-    // the second.
+    // At the approach 3 node 4 touches, and the gap of node 2, 1/16, closes after 1/8. Errors of 1/4 are poor there:
+    // gaps may be off by 0.04 · 10⁻³ · 3 · 0.5 and 2 · 10⁻³ · 3, that is by 0.006 06; over the rates, and with 0.05 of
+    // 1/8 for the second.
     let (run, found) = settled([3.0625, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
     assert_eq!(run.timings.ties, 1);
     check_events(&found, &[(1, 2.0), (0, 2.125)]);
