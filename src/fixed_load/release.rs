@@ -180,6 +180,13 @@ mod tests {
                 assert!((x - expected).abs() <= allowed, "{node}: {x} {expected}");
             }
         }
+        // Without weights pressures stay in proportion.
+        let before: Vec<f64> = (1..=NODES).map(|i| i as f64).collect();
+        let mut x = before.clone();
+        release(&mut inverse, &mut x, &[0.0; NODES], Prescribed::Sum(2.0 * sum(&before)));
+        for (x, before) in x.iter().zip(&before) {
+            assert!((x / before - 2.0).abs() < 1e-14, "{before}: {x}");
+        }
         Ok(())
     }
 
