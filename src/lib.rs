@@ -28,8 +28,8 @@
 //!
 //! | task | items |
 //! |---|---|
-//! | follow the loading path | [`LoadingSolver`], an iterator of [`LoadingState`]; [`loading::History`] reads it at any load |
-//! | solve for one load, or for a sweep of loads | [`FixedLoadSolver`] |
+//! | follow the loading path | [`loading`]: [`LoadingSolver`], an iterator of [`LoadingState`]; [`History`](loading::History) reads it at any load |
+//! | solve for one load, or for a sweep of loads | [`fixed_load`]: [`FixedLoadSolver`] |
 //! | contact patches, percolation, leakage, distributions | [`patches`] |
 //! | how much leaks through the gap | [`leak`] |
 //! | contact conductance, tables for finite elements | [`joint`] |
@@ -43,7 +43,7 @@
 //! | viscoelastic bodies: creep, relaxation, cycles | [`creep`] |
 //! | stress below the surface: where it is greatest, the load of first yield | [`stress`] |
 //! | superpose increments of a path | [`bed`] |
-//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface, [`SemiPeriodicBoussinesq`] for one that repeats along one side; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
+//! | choose the half-space | [`kernel`]: [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface, [`SemiPeriodicBoussinesq`] for one that repeats along one side; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | displacements of given pressures | [`convolution`] |

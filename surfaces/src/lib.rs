@@ -22,7 +22,7 @@
 //! | bytes that are not in a file | [`io::ReadOptions::read_bytes`], [`io::ReadOptions::read_from`] |
 //! | missing nodes | [`surface::fill_missing`] |
 //! | level, crop, filter, resample | [`surface::Topography`] |
-//! | heights, slopes, spectra, a fit of a self-affine one | [`HeightMap`], [`surface::Topography`] |
+//! | statistics of heights and slopes, spectra, texture, profiles | [`HeightMap`], [`surface::Topography`] |
 //! | generated surfaces and shapes | [`SelfAffine`], [`surface`] |
 //! | my own surface | the trait [`Surface`] |
 //! | what looks wrong with a surface | [`Warning`] |
