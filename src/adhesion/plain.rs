@@ -94,7 +94,10 @@ impl Plain {
             }
             self.touches.push(state);
         } else if self.now == self.touches.len() && !self.touch()? {
-            return self.end_behind();
+            // In full contact the elastic path ends, and all areas are reached.
+            let is_area = |target: &ContactTarget| matches!(target, ContactTarget::AreaFraction(_));
+            self.is_at_end = self.targets.iter().flatten().any(is_area);
+            return Ok(None);
         }
         let next = self.touches[self.now].contact;
         if let Some(limit) = self.limit(&next, 1.0)? {
@@ -103,33 +106,6 @@ impl Plain {
         let state = self.touches[self.now];
         self.now += 1;
         Ok(Some((AdhesiveEvent::Touch, state.node, state.contact)))
-    }
-
-    /// Once no further node touches: all areas are reached, and other targets in the order of their loads.
-    fn end_behind(&mut self) -> Result<Option<Happened>, Error> {
-        let targets = || self.targets.iter().flatten();
-        let last = self.touches.last().copied();
-        let Some(last) = last.filter(|_| targets().next().is_some()) else { return Ok(None) };
-        if targets().any(|target| matches!(target, ContactTarget::AreaFraction(_))) {
-            self.is_at_end = true;
-            return Ok(None);
-        }
-        let states = targets().filter_map(|&target| {
-            let state = match target {
-                ContactTarget::Approach(approach) => last.contact.at_approach(approach),
-                ContactTarget::MeanGap(gap) => last.contact.at_mean_gap(gap),
-                ContactTarget::Load(load) => last.contact.at_load(load),
-                _ => None,
-            };
-            Some((target, state?))
-        });
-        let Some((target, _)) = states.min_by(|(_, a), (_, b)| in_order(a, b, 1.0)) else {
-            return Ok(None);
-        };
-        self.path.continue_to(target)?;
-        let state = self.path.next().transpose()?;
-        self.is_at_end = state.is_some();
-        Ok(state.map(|state| (AdhesiveEvent::Limit, state.node, state.contact)))
     }
 
     fn release(&mut self) -> Result<Option<Happened>, Error> {

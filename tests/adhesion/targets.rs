@@ -228,10 +228,10 @@ fn no_adhesion_is_the_elastic_path() {
     }
 }
 
-/// Behind full contact and between two events of the elastic path, of several targets the first one reached counts.
+/// Between two events of the elastic path the first target that is reached counts; in full contact an area does.
 #[test]
 fn without_adhesion_the_first_target_counts() {
-    let grid = Grid::square(6, 1.0).unwrap();
+    let grid = Grid::square(10, 1.0).unwrap();
     let kernel = PeriodicBoussinesq::new(grid, 1.0).unwrap();
     let surface = surface();
     let mut path = AdhesivePath::builder(&surface, &kernel, Adhesion::work(0.0)).build().unwrap();
@@ -248,13 +248,12 @@ fn without_adhesion_the_first_target_counts() {
     };
     let loads =
         |parts: [f64; 2]| parts.map(|part| ContactTarget::Load(before + part * (full - before)));
-    for (parts, first) in [([0.75, 0.5], 0.5), ([0.25, 0.5], 0.25), ([3.0, 2.0], 2.0)] {
+    for (parts, first) in [([0.75, 0.5], 0.5), ([0.25, 0.5], 0.25)] {
         let load = end_of(&loads(parts)).load;
         assert!((load / (before + first * (full - before)) - 1.0).abs() < 1e-12, "{parts:?}");
     }
-    // All areas are reached, and approaches do not change there.
     let area = ContactTarget::AreaFraction(1.0);
-    assert_eq!(end_of(&[area]).contact_nodes, 36);
+    assert_eq!(end_of(&[area]).contact_nodes, 100);
     assert_eq!(end_of(&[loads([2.0; 2])[0], area]).load, full);
 }
 
