@@ -104,6 +104,18 @@ fn coats_have_stresses() -> Done {
         assert!(depths.iter().any(|other| other.as_f64() == Some(depth)), "{depths:?}");
     }
     assert!(folder.join("seen/section_x.png").exists());
+    // The greatest stress of each material, which is that of the body in one of the two.
+    let materials = body["materials"].as_array().ok_or("no materials")?;
+    let [coat_depth, base_depth] = [0, 1].map(|k| materials[k]["tresca"]["depth"].as_f64());
+    assert!(coat_depth <= Some(2e-4) && base_depth > Some(2e-4), "{materials:?}");
+    let stress = |of: &Value| of["von_mises"]["value"].as_f64();
+    let most = materials.iter().filter_map(stress).fold(0.0, f64::max);
+    assert_eq!((materials.len(), stress(body)), (2, Some(most)));
+    assert!(materials[0]["yield_stress"].is_null());
+    let found = run(&folder.0, "stress coat.npz --depth 1e-4 --json")?;
+    let document: Value = serde_json::from_slice(&found.stdout)?;
+    let materials = &document["bodies"][0]["materials"];
+    assert!(materials[0]["von_mises"]["value"].is_f64() && materials[1]["von_mises"].is_null());
 
     // Of each material the load that the library finds; one yield stress is that of both.
     let record = LoadingRecord::read_npz(folder.join("coat.npz"))?;
@@ -124,7 +136,12 @@ fn coats_have_stresses() -> Done {
     }
     let words = run(&folder.0, "stress coat.npz --yield-stress 2e9,1e15")?.stdout;
     let words = String::from_utf8(words)?;
-    for said in ["layer 1 yields first at W = ", "base does not yield on this path"] {
+    for said in [
+        "layer 1 yields first at W = ",
+        "base does not yield on this path",
+        "    in layer 1      ",
+        "    in base         ",
+    ] {
         assert!(words.contains(said), "{said}: {words}");
     }
     Ok(())

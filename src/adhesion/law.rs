@@ -77,11 +77,30 @@ impl Adhesion {
         (self.work, self.stress, self.range)
     }
 
+    /// `Ok` if what was given may be a law on some cells.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`]. A work of adhesion of 0 is none, whatever else was given.
+    pub fn check(&self) -> Result<(), Error> {
+        let given = [
+            ("work of adhesion", Some(self.work)),
+            ("range of adhesion", self.range),
+            ("cohesive stress", self.stress),
+        ];
+        for (quantity, value) in given {
+            if let Some(value) = value.filter(|_| self.work != 0.0) {
+                Error::require_positive(quantity, value)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The law on the cells of a kernel.
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`]; [`Error::OutOfRange`] for a range h₂ that does not lie between w/σ₀ and 2w/σ₀; and
+    /// That of [`Self::check`]; [`Error::OutOfRange`] for a range h₂ that does not lie between w/σ₀ and 2w/σ₀; and
     /// [`AdhesionError::Unresolved`] and [`AdhesionError::NoRoomForSlope`] for cells that are too large for the law.
     pub fn on(&self, kernel: &dyn InfluenceKernel) -> Result<CohesiveLaw, Error> {
         self.of(&KernelTable::new(kernel)?)
@@ -89,23 +108,19 @@ impl Adhesion {
 
     /// The same with coefficients that are tabulated.
     pub(super) fn of(&self, table: &KernelTable) -> Result<CohesiveLaw, Error> {
-        let compliance = table.self_influence() - table.gauge().unwrap_or_default();
-        if self.work == 0.0 {
+        self.check()?;
+        let (work, compliance) =
+            (self.work, table.self_influence() - table.gauge().unwrap_or_default());
+        if work == 0.0 {
             return Ok(CohesiveLaw { stress: 0.0, flat: 0.0, range: 0.0, compliance });
         }
-        let work = Error::require_positive("work of adhesion", self.work)?;
-        let cell = table.grid().dx().max(table.grid().dy());
-        let range = self
-            .range
-            .map(|range| Error::require_positive("range of adhesion", range))
-            .transpose()?;
+        let (cell, range) = (table.grid().dx().max(table.grid().dy()), self.range);
         let (stress, flat, range) = match self.stress {
             None => {
                 let range = range.unwrap_or_else(|| (2.0 * work * compliance / TRIANGLE).sqrt());
                 (2.0 * work / range, 0.0, range)
             }
             Some(stress) => {
-                let stress = Error::require_positive("cohesive stress", stress)?;
                 let middle = work / stress;
                 let slope = 0.5 * stress * compliance / BORDER;
                 if range.is_none() && slope > middle {

@@ -355,7 +355,7 @@ impl AdhesivePath {
     /// Why the branch has ended; `None` while there is more to come.
     #[must_use]
     pub fn end(&self) -> Option<AdhesiveEnd> {
-        self.end
+        self.end.filter(|_| self.queue.is_empty())
     }
 
     /// How many windows and events the path took.
@@ -455,24 +455,39 @@ impl AdhesivePath {
         Ok(self.last)
     }
 
+    /// Works for some time towards the next state, and says whether that, or the end of the branch, is there: then
+    /// [`next`](Iterator::next) returns at once. A jump of a soft surface takes minutes and has no state in between: a
+    /// program that may be asked to stop calls this until it is `true`.
+    ///
+    /// # Errors
+    ///
+    /// As the next item of the path, which ends with it.
+    pub fn prepare(&mut self) -> Result<bool, Error> {
+        if self.is_prepared() {
+            return Ok(true);
+        }
+        self.window().inspect_err(|_| self.end = Some(AdhesiveEnd::Failed))?;
+        Ok(self.is_prepared())
+    }
+
+    fn is_prepared(&self) -> bool {
+        self.end.is_some() || self.plain.is_some() || !self.queue.is_empty()
+    }
+
     fn advance(&mut self) -> Result<Option<AdhesiveState>, Error> {
         if self.end.is_none() && self.plain.is_some() {
             return self.advance_plain();
         }
-        while self.queue.is_empty() {
-            if self.end.is_some() {
-                return Ok(None);
-            }
-            self.window()?;
-        }
-        self.last = self.queue.pop_front();
-        let is_jumped = |state: &AdhesiveState| {
-            matches!(state.event, AdhesiveEvent::JumpEnd | AdhesiveEvent::Part)
-                && self.targets.is_past(&state.contact, self.direction)
-        };
-        if self.queue.is_empty() && self.last.as_ref().is_some_and(is_jumped) {
+        while !self.prepare()? {}
+        let Some(state) = self.queue.pop_front() else { return Ok(None) };
+        let has_jumped = matches!(state.event, AdhesiveEvent::JumpEnd | AdhesiveEvent::Part);
+        if self.queue.is_empty()
+            && has_jumped
+            && self.targets.is_past(&state.contact, self.direction)
+        {
             self.end = Some(AdhesiveEnd::Target);
         }
+        self.last = Some(state);
         Ok(self.last)
     }
 

@@ -1,7 +1,5 @@
 //! Without adhesion, w = 0: the states of the elastic path, there and back.
 
-use std::cmp::Ordering;
-
 use super::state::{AdhesiveEvent, Direction};
 use crate::contact::{ContactState, ContactTarget};
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingPath, LoadingState};
@@ -142,15 +140,12 @@ impl Plain {
         let history: History = self.touches.iter().copied().collect();
         let states = passed.into_iter().map(|target| history.at(target));
         let states = states.collect::<Result<Vec<LoadingState>, Error>>()?;
-        let first = states.into_iter().min_by(|a, b| in_order(&a.contact, &b.contact, way));
+        let first = states.into_iter().min_by(|a, b| {
+            let order = a.contact.order(&b.contact);
+            if way > 0.0 { order } else { order.reverse() }
+        });
         Ok(first.map(|state| (AdhesiveEvent::Limit, state.node, state.contact)))
     }
-}
-
-/// Which of two states of one path comes first on the way of a branch, 1 or −1.
-fn in_order(a: &ContactState, b: &ContactState, way: f64) -> Ordering {
-    let order = a.load.total_cmp(&b.load).then(a.approach.total_cmp(&b.approach));
-    if way > 0.0 { order } else { order.reverse() }
 }
 
 /// Whether a target lies before a state on the way of a branch, 1 or −1.

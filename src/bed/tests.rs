@@ -207,9 +207,9 @@ fn what_lies_outside_is_refused() -> Result<(), Error> {
         assert!(matches!(refused, Err(Error::OutOfRange { quantity: "approach", .. })));
     }
     let told = bed.at_load(2.75).err().map(|error| error.to_string());
-    assert_eq!(told.as_deref(), Some("the path ends at the load 2.5, before 2.75"));
+    assert_eq!(told.as_deref(), Some("the path ends at the load 2.5 N, before 2.75 N"));
     let told = bed.at_approach(4.0).err().map(|error| error.to_string());
-    assert_eq!(told.as_deref(), Some("the path ends at the approach 3, before 4"));
+    assert_eq!(told.as_deref(), Some("the path ends at the approach 3 m, before 4 m"));
     let beyond = Superposition::new([(2.75, 1.0)])?;
     assert!(matches!(beyond.scalars(&bed), Err(Error::Bed(BedError::PathEndsBefore { .. }))));
     for bad in [[(1.0, 1.0), (0.5, 1.0)], [(f64::NAN, 1.0), (1.0, 1.0)], [(-1.0, 1.0), (1.0, 1.0)]]

@@ -1,5 +1,7 @@
 //! The scalars of a state of contact.
 
+use std::cmp::Ordering;
+
 use crate::Grid;
 
 /// The scalars of one state of contact, in the units of the input; SI is given here.
@@ -135,6 +137,11 @@ impl ContactState {
             // About the mean displacement of a periodic half-space all nodes at their hardness have no elastic energy.
             self.energy = self.energy.max(earlier.energy);
         }
+    }
+
+    /// Which of two states of one path comes first while the load grows. Loads are equal on a plateau.
+    pub(crate) fn order(&self, other: &Self) -> Ordering {
+        self.load.total_cmp(&other.load).then(self.approach.total_cmp(&other.approach))
     }
 
     /// dW/dδ for the approach of this state: of the mean planes if there is no other.

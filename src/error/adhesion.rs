@@ -3,6 +3,8 @@
 use asperity_surfaces::number::quantity;
 use thiserror::Error;
 
+use super::units::with_unit;
+
 /// A law of adhesion that the mesh does not resolve, or a path on which it is not derived.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -54,7 +56,8 @@ pub enum AdhesionError {
 
     /// A branch that was not asked for from a state on it.
     #[error(
-        "the {quantity} at which the branch is to end is {value}, and the path is at {present} already"
+        "the {quantity} at which the branch is to end is {}, and the path is at {} already",
+        with_unit(quantity, *value), with_unit(quantity, *present)
     )]
     Behind {
         /// Which quantity.
@@ -67,7 +70,7 @@ pub enum AdhesionError {
 
     /// Nodes beyond those that were expected change at once, however few events are followed together.
     #[error(
-        "at approach {approach} node ({ix}, {iy}) is beyond its law by {value} of the range of adhesion after one \
+        "at approach {approach} m node ({ix}, {iy}) is beyond its law by {value} of the range of adhesion after one \
          event: the kernel is too ill-conditioned, or breaks the growth of contact that it promises"
     )]
     NotOnLaw {

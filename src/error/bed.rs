@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::units::with_unit;
+
 /// A path that is no bed of springs, or a state that it does not reach.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -12,7 +14,7 @@ pub enum BedError {
 
     /// A path that does not begin with first touch.
     #[error(
-        "the path begins at the load {load} and approach {approach}: its increments are needed from first touch on"
+        "the path begins at the load {load} N and approach {approach} m: its increments are needed from first touch on"
     )]
     NotFromFirstTouch {
         /// Load of the first state \[N\].
@@ -40,7 +42,10 @@ pub enum BedError {
     },
 
     /// A scalar of a state that is not finite, or changes the wrong way.
-    #[error("the {quantity} of state {step} is {value} after {before}, and should be {expected}")]
+    #[error(
+        "the {quantity} of state {step} is {} after {}, and should be {expected}",
+        with_unit(quantity, *value), with_unit(quantity, *before)
+    )]
     NotMonotone {
         /// Number of events up to the state.
         step: usize,
@@ -55,7 +60,7 @@ pub enum BedError {
     },
 
     /// A state of data without a stiffness.
-    #[error("state {step} has the stiffness {stiffness:?}, and a positive one is needed")]
+    #[error("state {step} has the stiffness {stiffness:?} N/m, and a positive one is needed")]
     NoStiffness {
         /// Number of events up to the state.
         step: usize,
@@ -64,7 +69,10 @@ pub enum BedError {
     },
 
     /// The path ends before the load or approach asked for.
-    #[error("the path ends at the {quantity} {end}, before {value}")]
+    #[error(
+        "the path ends at the {quantity} {}, before {}",
+        with_unit(quantity, *end), with_unit(quantity, *value)
+    )]
     PathEndsBefore {
         /// Load or approach.
         quantity: &'static str,

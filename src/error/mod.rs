@@ -7,6 +7,7 @@ mod joint;
 mod kernel;
 mod slip;
 mod stress;
+mod units;
 mod updater;
 
 use asperity_surfaces::number::{counted, quantity};
@@ -20,11 +21,12 @@ pub use joint::JointError;
 pub use kernel::KernelError;
 pub use slip::SlipError;
 pub use stress::StressError;
+use units::with_unit;
 pub use updater::UpdaterError;
 
 /// What went wrong, with the numbers that say so.
 ///
-/// Nodes are given by their grid indices `(ix, iy)`; quantities carry the units of the input.
+/// Nodes are given by their grid indices `(ix, iy)`, quantities in SI units.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -97,17 +99,17 @@ pub enum Error {
 
     /// The kernel is not positive definite on the contact: no elastic body answers like this.
     #[error(
-        "the kernel is not positive definite: at approach {approach} node ({ix}, {iy}) would give \
-         the pivot {pivot}"
+        "the kernel is not positive definite: at approach {approach} m node ({ix}, {iy}) would give \
+         the pivot {pivot} m/Pa"
     )]
     NotPositiveDefinite {
         /// Node index along x.
         ix: usize,
         /// Node index along y.
         iy: usize,
-        /// Approach at which the node would have joined.
+        /// Approach at which the node would have joined \[m\].
         approach: f64,
-        /// The pivot (a Schur complement), which must be positive.
+        /// The pivot (a Schur complement), which must be positive \[m/Pa\].
         pivot: f64,
     },
 
@@ -139,15 +141,16 @@ pub enum Error {
     /// A state that does not lie on the path: one of another path, or one that was extrapolated beyond the
     /// interval between two events in which it would be a state.
     #[error(
-        "the state of load {load} at approach {approach} does not lie on this path: at step {step} the \
-         {quantity} there is {value}, but should be {expected}"
+        "the state of load {load} N at approach {approach} m does not lie on this path: at step {step} the \
+         {quantity} there is {}, but should be {expected}",
+        with_unit(quantity, *value)
     )]
     NotOnPath {
         /// Number of events up to the state.
         step: usize,
-        /// Load of the state.
+        /// Load of the state \[N\].
         load: f64,
-        /// Approach of the state.
+        /// Approach of the state \[m\].
         approach: f64,
         /// The quantity that contradicts.
         quantity: &'static str,
@@ -215,8 +218,9 @@ pub enum Error {
     /// The kernel breaks what it promises of the growth of contact, or is too ill-conditioned for
     /// the promise to show: a node in contact would leave it, or one out of contact overlaps.
     #[error(
-        "the kernel breaks the promised growth of contact: at approach {approach} the {quantity} \
-         of node ({ix}, {iy}) is {value}"
+        "the kernel breaks the promised growth of contact: at approach {approach} m the {quantity} \
+         of node ({ix}, {iy}) is {}",
+        with_unit(quantity, *value)
     )]
     NotMonotone {
         /// The quantity with the wrong sign.
@@ -225,7 +229,7 @@ pub enum Error {
         ix: usize,
         /// Node index along y.
         iy: usize,
-        /// Approach at which it was noticed.
+        /// Approach at which it was noticed \[m\].
         approach: f64,
         /// The offending value.
         value: f64,
@@ -265,9 +269,9 @@ pub enum Error {
 
     /// Nodes touch and leave at one approach without end: they do so together, and what tells them
     /// apart lies below the rounding errors.
-    #[error("{events} events at the approach {approach}, and no end of them")]
+    #[error("{events} events at the approach {approach} m, and no end of them")]
     Cycling {
-        /// The approach.
+        /// The approach \[m\].
         approach: f64,
         /// Number of events there.
         events: usize,

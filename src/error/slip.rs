@@ -8,7 +8,7 @@ use thiserror::Error;
 pub enum SlipError {
     /// The tangential load exceeds what friction bears.
     #[error(
-        "the joint slides: friction bears a tangential load of {limit} under the load {load}, and {tangential_load} is asked for"
+        "the joint slides: friction bears a tangential load of {limit} N under the load {load} N, and {tangential_load} N is asked for"
     )]
     JointSlides {
         /// Tangential load asked for \[N\].
@@ -21,7 +21,7 @@ pub enum SlipError {
 
     /// The tangential load stays at the limit of friction while the load changes: any displacement is possible.
     #[error(
-        "the joint slides all the way from the load {from} to {to}: the tangential load stays at the limit of friction, and the \
+        "the joint slides all the way from the load {from} N to {to} N: the tangential load stays at the limit of friction, and the \
          displacement is not determined"
     )]
     StaysAtLimit {

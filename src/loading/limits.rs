@@ -244,10 +244,7 @@ impl Limits {
         let exceeded = exceeded.into_iter().filter(|(_, exceeded, _)| *exceeded);
         let first = exceeded
             .filter_map(|(end, _, state)| Some((end, state?)))
-            // Loads are equal on a plateau.
-            .min_by(|(_, a), (_, b)| {
-                a.load.total_cmp(&b.load).then(a.approach.total_cmp(&b.approach))
-            });
+            .min_by(|(_, a), (_, b)| a.order(b));
         if let Some((end, state)) = first {
             return Some((end, last.at_limit(state)));
         }

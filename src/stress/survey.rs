@@ -149,6 +149,19 @@ impl Subsurface {
         spans
     }
 
+    /// The depths of a survey that lie in each material, from the uppermost layer to the base; none in one that no
+    /// depth was looked at in. What lies on an interface belongs to the layer above it.
+    #[must_use]
+    pub fn by_material(&self, survey: &Survey) -> Vec<Survey> {
+        let spans = self.spans().into_iter();
+        spans
+            .map(|Span { top, bottom }| {
+                let within = |depth: &&DepthSurvey| (top..=bottom).contains(&depth.depth);
+                Survey { depths: survey.depths.iter().filter(within).copied().collect() }
+            })
+            .collect()
+    }
+
     /// The greatest depth at which the body has stresses \[m\].
     fn end(&self) -> f64 {
         self.spans().last().map_or(f64::INFINITY, |span| span.bottom)

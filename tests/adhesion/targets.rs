@@ -140,6 +140,47 @@ fn a_path_turns_where_it_is() {
     }
 }
 
+/// A path that is asked step by step has the same states, and no end before the last of them; one that is left within
+/// a jump turns around at the state before it.
+#[test]
+fn jumps_can_be_left() {
+    let (surface, kernel) = (surface(), kernel());
+    // With one event to a window a jump takes several.
+    let build = |window: usize| {
+        let builder = AdhesivePath::builder(&surface, &kernel, Adhesion::work(1e-3));
+        builder.until(ContactTarget::Load(1e-3)).window_size(window).build().unwrap()
+    };
+    for window in [1, 64] {
+        let expected = run(&mut build(window));
+        let (mut path, mut states, mut within) = (build(window), Vec::new(), 0);
+        loop {
+            while !path.prepare().unwrap() {
+                within += 1;
+                assert_eq!((path.state(), path.end()), (states.last().copied(), None));
+                if within % 20 == 1 && path.state().is_some() {
+                    let mut left = build(window);
+                    assert_eq!(left.by_ref().take(states.len()).count(), states.len());
+                    assert!(!left.prepare().unwrap());
+                    let mut stopped = build(window);
+                    stopped.nth(states.len() - 1);
+                    let [left, stopped] = [left, stopped].map(|mut path| {
+                        path.unload().unwrap();
+                        *run(&mut path).last().unwrap()
+                    });
+                    assert_eq!((left.contact.load, left.direction), (0.0, Direction::Unloading));
+                    assert!((left.dissipated - stopped.dissipated).abs() < 1e-15);
+                }
+            }
+            let Some(state) = path.next() else { break };
+            states.push(state.unwrap());
+            let is_last = states.len() == expected.len();
+            assert_eq!(path.end(), is_last.then_some(AdhesiveEnd::Target));
+        }
+        assert_eq!(states, expected);
+        assert!(window > 1 || within > 20, "{within}");
+    }
+}
+
 /// Little adhesion changes little: load and area at an approach are those of the elastic path, to what so small a
 /// stress can carry.
 #[test]

@@ -57,7 +57,7 @@ pub(super) fn draw(
         if is_linear {
             Axis::linear("time", "s", start, last)
         } else {
-            Axis::logarithmic("time", "s", first, last)
+            Axis::plain_logarithmic("time [s]", first, last)
         }
     };
     let chart = |title: &str, y: Axis, series: Vec<Series>, legend| Chart {

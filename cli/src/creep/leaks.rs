@@ -112,7 +112,7 @@ impl Leaks {
         let least = points.iter().map(|point| point.1).fold(most, f64::min);
         let chart = Chart {
             title: "leak rate".to_string(),
-            x: Axis::logarithmic("time", "s", from, to),
+            x: Axis::plain_logarithmic("time [s]", from, to),
             y: Axis::logarithmic("leak rate", "m³/s", least, most).with_room(0.04, 0.06),
             series: vec![Series::new("", BLUE, Style::Line, points)],
             legend: Corner::BottomLeft,

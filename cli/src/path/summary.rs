@@ -23,8 +23,8 @@ pub(super) struct Summary {
     grid: Option<Grid>,
     /// Of paths with adhesion.
     pulled: Vec<Pulled>,
-    /// Each warning with how many paths have one that differs in its numbers alone.
-    warnings: Vec<(String, usize)>,
+    /// Each warning with the first seed that has it, and how many paths have one that differs in its numbers alone.
+    warnings: Vec<(u64, String, usize)>,
 }
 
 impl Summary {
@@ -48,7 +48,7 @@ impl Summary {
         self.rows.push(row(job, last, greatest, &corrected, conductions));
         self.seeds.push(seed);
         self.grid = Some(job.grid());
-        warnings(job, solver)?.into_iter().for_each(|warning| self.warn(warning));
+        warnings(job, solver)?.into_iter().for_each(|warning| self.warn(seed, warning));
         verify(solver)
     }
 
@@ -62,13 +62,13 @@ impl Summary {
         self.pulled.push(pulled);
         self.seeds.push(seed);
         self.grid = Some(job.grid());
-        warnings.iter().for_each(|warning| self.warn(warning.clone()));
+        warnings.iter().for_each(|warning| self.warn(seed, warning.clone()));
     }
 
-    fn warn(&mut self, warning: String) {
-        match self.warnings.iter_mut().find(|(other, _)| kind(other) == kind(&warning)) {
-            Some((_, count)) => *count += 1,
-            None => self.warnings.push((warning, 1)),
+    fn warn(&mut self, seed: u64, warning: String) {
+        match self.warnings.iter_mut().find(|(_, other, _)| kind(other) == kind(&warning)) {
+            Some((.., count)) => *count += 1,
+            None => self.warnings.push((seed, warning, 1)),
         }
     }
 
@@ -82,11 +82,11 @@ impl Summary {
             say!("\nthe last state of loading of each path, and what pulls");
             self.print_pulled();
         }
-        for (warning, count) in &self.warnings {
+        for (seed, warning, count) in &self.warnings {
             let of = counted(*count, "path");
             speech::warn(match count {
-                1 => warning.clone(),
-                _ => format!("{warning} (one of {of} like it)"),
+                1 => format!("seed {seed}: {warning}"),
+                _ => format!("seed {seed}, one of {of} like it: {warning}"),
             });
         }
     }

@@ -26,14 +26,22 @@ pub(super) struct Body {
     pub(super) name: &'static str,
     pub(super) below: Subsurface,
     pub(super) survey: Survey,
-    /// Of each material whose yield stress is known.
-    pub(super) yielding: Vec<Yielding>,
+    /// From the uppermost layer to the base.
+    pub(super) materials: Vec<Material>,
 }
 
-/// A material, its yield stress \[Pa\], and the state of the path at which it is reached.
-pub(super) struct Yielding {
+/// A layer, the base, or all of a body without layers.
+pub(super) struct Material {
     /// Which of several it is, in words.
-    pub(super) material: Option<String>,
+    pub(super) name: Option<String>,
+    /// The depths that lie in it.
+    pub(super) survey: Survey,
+    /// If its yield stress is known.
+    pub(super) yielding: Option<Yielding>,
+}
+
+/// A yield stress \[Pa\], and the state of the path at which it is reached.
+pub(super) struct Yielding {
     pub(super) stress: f64,
     pub(super) first: Option<FirstYield>,
 }
@@ -98,8 +106,21 @@ impl<'a> Moment<'a> {
             Ok(())
         });
         let survey = survey.map_err(failed)?;
-        let yielding = self.yielding(&below, strengths)?;
-        Ok(Body { name, below, survey, yielding })
+        let mut yielding = self.yielding(&below, strengths)?.into_iter();
+        let layers = below.layers().map_or(0, |body| body.layers().len());
+        let word = |place: usize| match () {
+            () if layers == 0 => None,
+            () if place < layers => Some(format!("layer {}", place + 1)),
+            () => Some("base".to_string()),
+        };
+        let parts = below.by_material(&survey).into_iter().enumerate();
+        let materials = parts.map(|(place, survey)| Material {
+            name: word(place),
+            survey,
+            yielding: yielding.next(),
+        });
+        let materials = materials.collect();
+        Ok(Body { name, below, survey, materials })
     }
 
     /// When each material begins to yield, whose yield stresses are one for all, one for each, or not known.
@@ -124,16 +145,8 @@ impl<'a> Moment<'a> {
         let found = below
             .first_yields(&mut self.path, history, &strengths)
             .map_err(|error| Failure::new("cannot find the load of first yield", error))?;
-        let layers = below.layers().map_or(0, |body| body.layers().len());
-        let name = |place: usize| match () {
-            () if layers == 0 => None,
-            () if place < layers => Some(format!("layer {}", place + 1)),
-            () => Some("base".to_string()),
-        };
-        let each = found.into_iter().zip(strengths).enumerate();
-        Ok(each
-            .map(|(place, (first, stress))| Yielding { material: name(place), stress, first })
-            .collect())
+        let each = found.into_iter().zip(strengths);
+        Ok(each.map(|(first, stress)| Yielding { stress, first }).collect())
     }
 }
 

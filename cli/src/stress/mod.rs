@@ -86,8 +86,9 @@ pub(crate) struct Options {
 
     /// Print one JSON object with load, mean_pressure, friction, angle, bodies and warnings, and write files only if
     /// --out is given. Each body has poissons_ratio, von_mises, tresca, greatest_shear and greatest_tension (value,
-    /// depth, node), depths, and materials with yield_stress and first_yield (load, contact_nodes, von_mises; null if
-    /// the path ends before); SI units
+    /// depth, node), depths, and materials, from the uppermost layer to the base: the same four of each (null without a
+    /// depth in it), yield_stress, and first_yield (load, contact_nodes, von_mises; null if the path ends before); SI
+    /// units
     #[arg(long)]
     json: bool,
 

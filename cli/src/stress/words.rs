@@ -1,11 +1,11 @@
 //! What is printed.
 
-use asperity::stress::{Greatest, Measure};
+use asperity::stress::{Greatest, Measure, Survey};
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::say;
 use serde_json::{Value, json};
 
-use super::body::{Body, Moment, Yielding};
+use super::body::{Body, Material, Moment, Yielding};
 
 /// Nodes in contact below which a first yield is that of the grid.
 const FEW_NODES: usize = 50;
@@ -27,23 +27,33 @@ fn of_body(body: &Body) -> Value {
     let mut value = json!({
         "poissons_ratio": body.below.poissons_ratio(),
         "depths": body.survey.depths.iter().map(|depth| depth.depth).collect::<Vec<_>>(),
-        "materials": body.yielding.iter().map(of_material).collect::<Vec<_>>(),
+        "materials": body.materials.iter().map(of_material).collect::<Vec<_>>(),
     });
-    for measure in Measure::ALL {
-        value[measure.name()] = place(body.survey.greatest(measure));
-    }
+    put_greatest(&mut value, &body.survey);
     value
 }
 
-fn of_material(yielding: &Yielding) -> Value {
-    json!({
-        "yield_stress": yielding.stress,
-        "first_yield": yielding.first.map(|first| json!({
+fn of_material(material: &Material) -> Value {
+    let yielding = material.yielding.as_ref();
+    let mut value = json!({
+        "yield_stress": yielding.map(|yielding| yielding.stress),
+        "first_yield": yielding.and_then(|yielding| yielding.first).map(|first| json!({
             "load": first.state.contact.load,
             "contact_nodes": first.state.contact.contact_nodes,
             "von_mises": place(first.greatest),
         })),
-    })
+    });
+    put_greatest(&mut value, &material.survey);
+    value
+}
+
+/// The greatest stresses of a survey, null without a depth.
+fn put_greatest(value: &mut Value, survey: &Survey) {
+    for measure in Measure::ALL {
+        let is_there = !survey.depths.is_empty();
+        value[measure.name()] =
+            is_there.then(|| place(survey.greatest(measure))).unwrap_or_default();
+    }
 }
 
 fn place(greatest: Greatest) -> Value {
@@ -84,17 +94,19 @@ pub(super) fn print(moment: &Moment, bodies: &[Body]) {
             (Measure::GreatestShear, "greatest shear"),
             (Measure::GreatestTension, "greatest tension"),
         ] {
-            let found = body.survey.greatest(measure);
-            say!(
-                "  {name:<17} {} at a depth of {}, below node ({}, {})",
-                quantity(found.value, "Pa", 4),
-                quantity(found.depth, "m", 4),
-                found.node.0,
-                found.node.1
-            );
+            say_greatest(&format!("  {name:<17}"), body.survey.greatest(measure));
+            if measure == Measure::VonMises {
+                for Material { name, survey, .. } in &body.materials {
+                    if let (Some(name), false) = (name, survey.depths.is_empty()) {
+                        let label = format!("    {:<15}", format!("in {name}"));
+                        say_greatest(&label, survey.greatest(measure));
+                    }
+                }
+            }
         }
-        for Yielding { material, stress, first } in &body.yielding {
-            let who = material.as_ref().map_or(String::new(), |name| format!("{name} "));
+        for Material { name, yielding, .. } in &body.materials {
+            let Some(Yielding { stress, first }) = yielding else { continue };
+            let who = name.as_ref().map_or(String::new(), |name| format!("{name} "));
             let strength = quantity(*stress, "Pa", 4);
             match first {
                 Some(first) => say!(
@@ -111,6 +123,16 @@ pub(super) fn print(moment: &Moment, bodies: &[Body]) {
             }
         }
     }
+}
+
+fn say_greatest(label: &str, found: Greatest) {
+    say!(
+        "{label} {} at a depth of {}, below node ({}, {})",
+        quantity(found.value, "Pa", 4),
+        quantity(found.depth, "m", 4),
+        found.node.0,
+        found.node.1
+    );
 }
 
 /// What the figures do not say.
@@ -132,12 +154,13 @@ pub(super) fn warnings(moment: &Moment, bodies: &[Body]) -> Vec<String> {
                 quantity(greatest.depth, "m", 3)
             ));
         }
-        for Yielding { material, first, .. } in &body.yielding {
+        for Material { name, yielding, .. } in &body.materials {
+            let first = yielding.as_ref().and_then(|yielding| yielding.first);
             if let Some(first) = first.filter(|first| first.state.contact.contact_nodes < FEW_NODES)
             {
                 warnings.push(format!(
                     "{} yields with {} in contact: below some {FEW_NODES} of them the load of first yield is that of the grid",
-                    material.clone().unwrap_or_else(|| format!("the {}", body.name)),
+                    name.clone().unwrap_or_else(|| format!("the {}", body.name)),
                     counted(first.state.contact.contact_nodes, "node")
                 ));
             }

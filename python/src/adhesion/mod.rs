@@ -55,8 +55,10 @@ impl Adhesion {
         work_of_adhesion: f64,
         adhesion_range: Option<f64>,
         cohesive_stress: Option<f64>,
-    ) -> Self {
-        Self { work: work_of_adhesion, range: adhesion_range, stress: cohesive_stress }
+    ) -> Fallible<Self> {
+        let law = Self { work: work_of_adhesion, range: adhesion_range, stress: cohesive_stress };
+        law.law().check()?;
+        Ok(law)
     }
 
     /// Work of adhesion w [J/m²].

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::task::Poll;
 use std::time::{Duration, Instant};
 
 use asperity::adhesion as engine;
@@ -32,17 +33,23 @@ struct Inner {
 }
 
 impl Inner {
-    fn next(&mut self) -> Result<Option<engine::AdhesiveState>, Error> {
+    /// The next state of the branch, if it comes until then.
+    fn next(&mut self, end: Instant) -> Result<Poll<Option<engine::AdhesiveState>>, Error> {
+        while !self.path.prepare()? {
+            if Instant::now() >= end {
+                return Ok(Poll::Pending);
+            }
+        }
         let state = self.path.next().transpose()?;
         self.states.extend(state);
-        Ok(state)
+        Ok(Poll::Ready(state))
     }
 
     /// States for so long; whether there are more.
     fn run_for(&mut self, time: Duration) -> Result<bool, Error> {
-        let start = Instant::now();
-        while self.next()?.is_some() {
-            if start.elapsed() >= time {
+        let end = Instant::now() + time;
+        while self.next(end)? != Poll::Ready(None) {
+            if Instant::now() >= end {
                 return Ok(true);
             }
         }
@@ -144,10 +151,17 @@ impl AdhesivePath {
     }
 
     fn __next__(&self, py: Python<'_>) -> Fallible<Option<AdhesiveState>> {
-        let mut inner = self.lock(py);
-        let inner = &mut *inner;
-        let state = detached(py, || inner.next())??;
-        Ok(state.map(|state| AdhesiveState { state }))
+        loop {
+            let next = {
+                let mut inner = self.lock(py);
+                let inner = &mut *inner;
+                detached(py, || inner.next(Instant::now() + STRETCH))??
+            };
+            if let Poll::Ready(state) = next {
+                return Ok(state.map(|state| AdhesiveState { state }));
+            }
+            py.check_signals()?;
+        }
     }
 
     /// Compute the rest of the branch.

@@ -199,10 +199,7 @@ impl<'a> Course<'a> {
     fn branch(&mut self, interrupt: &Interrupt, bar: &ProgressBar) -> Result<(), Failure> {
         let start = Instant::now();
         let most = self.followed.pressed().map_or(1, |state| state.contact.contact_nodes.max(1));
-        while !interrupt.is_asked()
-            && let Some(state) = self.followed.path.next()
-        {
-            let state = state.map_err(|error| Failure::new("the path broke off", error))?;
+        while let Some(state) = self.next(interrupt)? {
             if state.step.is_multiple_of(STRIDE) {
                 let nodes = state.contact.contact_nodes;
                 let progress = match state.direction {
@@ -217,6 +214,18 @@ impl<'a> Course<'a> {
             self.add(state)?;
         }
         Ok(())
+    }
+
+    /// The next state of the branch; `None` at its end, or once the path is asked to stop.
+    fn next(&mut self, interrupt: &Interrupt) -> Result<Option<AdhesiveState>, Failure> {
+        let broke_off = |error| Failure::new("the path broke off", error);
+        let path = &mut self.followed.path;
+        while !interrupt.is_asked() {
+            if path.prepare().map_err(broke_off)? {
+                return path.next().transpose().map_err(broke_off);
+            }
+        }
+        Ok(None)
     }
 
     fn add(&mut self, state: AdhesiveState) -> Result<(), Failure> {
