@@ -88,7 +88,10 @@ fn many_paths_are_told_in_one_table() -> Done {
     assert_eq!(seeds, ["4", "5", "6"], "{told}");
     assert_eq!(told.matches("K_i: interfacial").count(), 1, "{told}");
     assert_eq!(told.matches("the greatest pressure is").count(), 1, "{told}");
-    assert!(told.contains("warning: seed 4, one of 3 paths like it: the greatest pressure is"), "{told}");
+    assert!(
+        told.contains("warning: seed 4, one of 3 paths like it: the greatest pressure is"),
+        "{told}"
+    );
     assert_eq!(said(&done).matches("half-space free").count(), 1, "{}", said(&done));
     let gathered = String::from_utf8(output(&folder.0, "gather runs")?.stdout)?;
     assert!(gathered.contains("means of 3 paths at common loads"), "{gathered}");

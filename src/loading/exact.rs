@@ -8,7 +8,7 @@ use super::cost::{WITH_FACTOR, automatic_window, watched_for};
 use super::factor_log::FactorLog;
 use super::gap_field::GapLine;
 use super::plastic::Plastic;
-use super::ranking::{Ranking, rank, rank_closing, rank_yields, survey};
+use super::ranking::{Ranking, rank, rank_yields, survey};
 use super::run::LoadingRun;
 use super::scalars::Rates;
 use super::state::ContactEvent;
@@ -19,7 +19,7 @@ use super::tuning::{
     TOLERANCE,
 };
 use super::walk::{Carried, Walk};
-use super::window::{SUMS, Watched, Window, of_overlap};
+use super::window::{SUMS, Watched, Window};
 use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Solution, join_all};
@@ -204,11 +204,7 @@ impl Exact {
             let first = times.fold(f64::INFINITY, f64::min);
             return Ok(Survey { first, beyond: f64::INFINITY, rates });
         }
-        let touches = if run.may_leave() {
-            rank_closing(run, &mut self.ranking)?
-        } else {
-            rank(run, &mut self.ranking)?
-        };
+        let touches = rank(run, &mut self.ranking)?;
         let [yields, beyond] = rank_yields(run, &mut self.ranking);
         let first = touches.min(yields);
         Ok(Survey { first, beyond, rates: run.scalars.rates() })
@@ -302,19 +298,17 @@ impl Exact {
             }
             _ => schur.row_sums().iter().map(|&sum| [sum, 0.0, 0.0]).collect(),
         };
-        let hardness = |node: usize| plastic.map_or(f64::INFINITY, |p| p.hardness().values()[node]);
-        let mut watched: Vec<Watched> = Vec::with_capacity(nodes.len());
-        for (&node, sums) in outside.iter().zip(&sums) {
-            let (line, hardness) = (run.line(node), hardness(node));
-            watched.push(Watched { node, is_elastic: false, hardness, line, sums: *sums });
-        }
+        let (sums_outside, sums_inside) = sums.split_at(outside.len());
+        let apart = outside.iter().zip(sums_outside);
+        let apart = apart
+            .map(|(&node, &sums)| Watched::apart((node, run.hardness(node)), run.line(node), sums));
         let Solution { pressure, rate } = run.field.solution();
-        for (&place, &of_gap) in positions.iter().zip(&sums[outside.len()..]) {
-            let (node, hardness) = (order[place], hardness(order[place]));
-            let line = GapLine { gap: pressure[place], closing: -rate[place] };
-            let sums = of_overlap(of_gap, hardness);
-            watched.push(Watched { node, is_elastic: true, hardness, line, sums });
-        }
+        let pressed = positions.iter().zip(sums_inside).map(|(&place, &of_gap)| {
+            let node = order[place];
+            let pressure = [pressure[place], rate[place]];
+            Watched::pressed((node, run.hardness(node)), pressure, of_gap)
+        });
+        let mut watched: Vec<Watched> = apart.chain(pressed).collect();
         if positions.is_empty() && !has_yielded {
             Watched::leave_out_pressures(&mut watched, schur, horizon);
         }

@@ -15,31 +15,17 @@ use crate::clock::Stopwatch;
 pub(super) type Ranking = Vec<(f64, usize)>;
 
 /// Ranks the nodes out of contact by the time from which on they tie with one that touches, if no other joined, after
-/// checking that contact still grows. Returns when the first would touch.
+/// checking that contact still grows. Where nodes may leave, gaps may open, and those that do not close never touch.
+/// Returns when the first would touch.
 pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, Error> {
     let start = Stopwatch::start();
-    let least = -TOLERANCE * run.greatest_rate();
-    let rates = run.contact.order().iter().zip(&run.field.solution().rate);
-    for (&node, &y2) in rates {
-        if y2.is_nan() || y2 < least {
-            return Err(run.not_monotone("pressure per unit of approach", node, y2));
-        }
+    let may_leave = run.may_leave();
+    if !may_leave {
+        check_growth(run)?;
     }
     let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
     fill(run, ranking, Some(0.0), |line| {
-        first = first.min(line.touches());
-        ties_from(approach, *line)
-    })?;
-    run.timings.choice += start.elapsed();
-    Ok(first)
-}
-
-/// The same where nodes may leave, and gaps may open: those that do not close would never touch.
-pub(super) fn rank_closing(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, Error> {
-    let start = Stopwatch::start();
-    let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
-    fill(run, ranking, Some(0.0), |line| {
-        if line.closing <= LEAST_RATE {
+        if may_leave && line.closing <= LEAST_RATE {
             return f64::INFINITY;
         }
         first = first.min(line.touches());
@@ -47,6 +33,16 @@ pub(super) fn rank_closing(run: &mut LoadingRun, ranking: &mut Ranking) -> Resul
     })?;
     run.timings.choice += start.elapsed();
     Ok(first)
+}
+
+/// Checks that the pressure of no node in contact falls.
+fn check_growth(run: &LoadingRun) -> Result<(), Error> {
+    let least = -TOLERANCE * run.greatest_rate();
+    let mut rates = run.contact.order().iter().zip(&run.field.solution().rate);
+    match rates.find(|(_, rate)| rate.is_nan() || **rate < least) {
+        Some((&node, &rate)) => Err(run.not_monotone("pressure per unit of approach", node, rate)),
+        None => Ok(()),
+    }
 }
 
 /// Looks at all gaps at the present approach, and ranks them by a time. With `allowed`, the overlap that a solution may

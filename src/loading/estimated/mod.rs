@@ -25,7 +25,7 @@ use super::trial::{Trial, of_nodes};
 use super::walk::Carried;
 use super::window::correction::{self, AtEnd, Correction};
 use super::window::ties::{self, Beginning, Question, Settled};
-use super::window::{Watched, Window, WindowEvent, of_overlap};
+use super::window::{Watched, Window, WindowEvent};
 use crate::contact::ContactSequence;
 use crate::loading::tuning::{
     BEFORE_RELEASE, CERTAIN, FEWEST, LEAST_CONTACT, LEFT_OUT, MOST_CHANGE, MOST_TRIES, OF_RESIDUAL,
@@ -274,14 +274,12 @@ impl Estimated {
         let gap = problem.initial_gap();
         let watched = nodes.iter().zip(lines.iter().zip(&sums)).enumerate();
         let watched = watched.map(|(k, (&node, (&[value, rate], &of_gap)))| {
-            let (is_elastic, hardness) = (k >= outside.len(), run.hardness(node));
-            let (line, sums) = if is_elastic {
-                let line = GapLine { gap: value, closing: -rate };
-                (line, of_overlap(of_gap, hardness))
-            } else {
-                (GapLine { gap: gap[node] + value - approach, closing: 1.0 - rate }, of_gap)
-            };
-            Watched { node, is_elastic, hardness, line, sums }
+            let of = (node, run.hardness(node));
+            if k >= outside.len() {
+                return Watched::pressed(of, [value, rate], of_gap);
+            }
+            let line = GapLine { gap: gap[node] + value - approach, closing: 1.0 - rate };
+            Watched::apart(of, line, of_gap)
         });
         let mut watched: Vec<Watched> = watched.collect();
         let horizon = candidates.horizon.min(self.beyond);

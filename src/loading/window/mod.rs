@@ -27,6 +27,28 @@ pub(super) struct Watched {
 }
 
 impl Watched {
+    /// A node out of contact, with its hardness.
+    pub(super) fn apart((node, hardness): (usize, f64), line: GapLine, sums: [f64; SUMS]) -> Self {
+        Self { node, is_elastic: false, hardness, line, sums }
+    }
+
+    /// A node in contact that has not yielded, with its pressure and how fast that grows, and what a gap of it adds to
+    /// the sums over all nodes. An overlap of it adds the opposite, and its own is the depth of a node that has yielded.
+    pub(super) fn pressed(
+        (node, hardness): (usize, f64),
+        [pressure, rate]: [f64; 2],
+        of_gap: [f64; SUMS],
+    ) -> Self {
+        let own = [1.0, 1.0, hardness];
+        Self {
+            node,
+            is_elastic: true,
+            hardness,
+            line: GapLine { gap: pressure, closing: -rate },
+            sums: std::array::from_fn(|k| own[k] - of_gap[k]),
+        }
+    }
+
     /// Leaves the pressures of nodes out of contact unwatched that cannot come to their hardness in a window in which
     /// nodes only touch.
     pub(super) fn leave_out_pressures(watched: &mut [Self], schur: &Schur, horizon: f64) {
@@ -44,12 +66,6 @@ impl Watched {
 }
 
 pub(super) const SUMS: usize = 3;
-
-/// What an overlap of a node in contact adds to the sums of [`Watched`], from what a gap of it adds to the same over
-/// all nodes: its own is the depth of a node that has yielded.
-pub(super) fn of_overlap(of_gap: [f64; SUMS], hardness: f64) -> [f64; SUMS] {
-    [1.0 - of_gap[0], 1.0 - of_gap[1], hardness - of_gap[2]]
-}
 
 /// What happens to a watched node.
 #[derive(Debug, Clone, Copy, PartialEq)]
