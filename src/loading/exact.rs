@@ -6,7 +6,6 @@ mod leaving;
 use super::contradiction::{Slack, contradiction};
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
 use super::factor_log::FactorLog;
-use super::gap_field::GapLine;
 use super::plastic::Plastic;
 use super::ranking::{Ranking, rank, rank_yields, survey};
 use super::run::LoadingRun;

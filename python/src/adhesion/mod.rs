@@ -6,6 +6,7 @@ mod path;
 use asperity::adhesion as engine;
 use pyo3::prelude::*;
 
+use crate::errors::Fallible;
 pub(crate) use path::{AdhesivePath, set_up};
 
 /// How much two surfaces stick: the pull on a gap, which `load_path` takes as `adhesion`.
