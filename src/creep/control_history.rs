@@ -130,7 +130,8 @@ impl ViscoelasticBed<'_> {
             return Ok(Vec::new());
         };
         Error::require("time of a state", first, first.is_finite(), "finite")?;
-        let mut next = if self.begin_at(begin.min(first)) {
+        let is_new = self.begin_at(begin.min(first));
+        let mut next = if is_new {
             // Unloaded up to the first corner.
             if first >= begin {
                 self.step(0.0, course.control(0.0))?;
@@ -143,6 +144,9 @@ impl ViscoelasticBed<'_> {
         let mut states = Vec::with_capacity(times.len());
         for &time in times {
             while let Some(&(at, value)) = corners.get(next).filter(|corner| corner.0 <= time) {
+                if is_new && next == 0 && self.state().time < at {
+                    self.to(at, course.control(0.0))?;
+                }
                 self.to(at, course.control(value))?;
                 next += 1;
             }

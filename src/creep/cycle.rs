@@ -19,7 +19,8 @@ pub struct Cycle {
     pub approach_amplitude: f64,
     /// Energy lost in the last cycle, `∮ (W − W̄) dδ` \[J\].
     pub dissipation: f64,
-    /// Amplitude of the load over that of the approach \[N/m\].
+    /// Amplitude of the load over that of the approach \[N/m\]; infinite where that does not change, in full contact of
+    /// a periodic half-space.
     pub stiffness: f64,
     /// Energy lost over π times both amplitudes: the tangent of the phase as far as the contact is linear.
     pub loss_factor: f64,
@@ -134,8 +135,8 @@ impl ViscoelasticBed<'_> {
     /// # Errors
     ///
     /// [`CreepError::NotSteady`] if the cycle is not as near to the steady one as the tolerance asks for after the most
-    /// cycles; [`CreepError::NoSteadyCycle`] for bodies that flow; [`Error::NotPositive`] for amplitudes and periods
-    /// that are not; [`Error::OutOfRange`] for a mean load below the amplitude, fewer than 8 steps or more than a
+    /// cycles; [`CreepError::NoSteadyCycle`] for bodies that flow; [`Error::NotPositive`] for amplitudes, periods and
+    /// tolerances that are not; [`Error::OutOfRange`] for a mean load below the amplitude, fewer than 8 steps or more than a
     /// million, and no cycles; those of [`step`](Self::step).
     pub fn cycle(
         &mut self,
@@ -154,6 +155,7 @@ impl ViscoelasticBed<'_> {
         let is_so = (8..=MOST_STEPS).contains(&steps);
         Error::require("steps of a cycle", steps as f64, is_so, "from 8 to a million")?;
         Error::require("cycles at most", most as f64, most >= 1, "at least 1")?;
+        Error::require_positive("tolerance of a cycle", tolerance)?;
         if self.state().load != mean_load {
             self.step(0.0, Control::Load(mean_load))?;
         }
@@ -174,8 +176,14 @@ impl ViscoelasticBed<'_> {
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             let approach_amplitude = 0.5 * (high - low);
             let scale = amplitude * approach_amplitude;
-            let distance = (energy.distance(dissipation, ahead.slowest) / scale)
-                .max(amplitudes.distance(approach_amplitude, ahead.slowest) / approach_amplitude);
+            // In full contact of a body that repeats mean planes come no closer: every cycle is the steady one.
+            let distance = if approach_amplitude == 0.0 {
+                0.0
+            } else {
+                let of_energy = energy.distance(dissipation, ahead.slowest) / scale;
+                let change = amplitudes.distance(approach_amplitude, ahead.slowest);
+                of_energy.max(change / approach_amplitude)
+            };
             if distance <= tolerance {
                 return Ok(Cycle {
                     period,
@@ -184,7 +192,11 @@ impl ViscoelasticBed<'_> {
                     approach_amplitude,
                     dissipation,
                     stiffness: amplitude / approach_amplitude,
-                    loss_factor: dissipation / (std::f64::consts::PI * scale),
+                    loss_factor: if scale > 0.0 {
+                        dissipation / (std::f64::consts::PI * scale)
+                    } else {
+                        0.0
+                    },
                     path,
                     cycles,
                     distance,

@@ -92,7 +92,11 @@ impl<'a> Growth<'a> {
 
     /// W′ just after a time: 0 before the first corner.
     pub(super) fn at(&self, time: f64) -> f64 {
-        let load = self.load.place(time).map_or(0.0, |place| self.load.response(place).0);
+        self.to_knot(self.load.place(time).map_or(0.0, |place| self.load.response(place).0))
+    }
+
+    /// That of the last knot for a load that rounding alone takes beyond it.
+    pub(super) fn to_knot(&self, load: f64) -> f64 {
         match self.knots.last() {
             Some(&last) if load > last && load <= last * (1.0 + ROUNDING) => last,
             _ => load,

@@ -77,7 +77,10 @@ impl<'a> Creep<'a> {
             Error::require("load at a corner", load, load >= 0.0, "at least 0")?;
         }
         let growth = Growth::new(bed.loads(), Hereditary::creep(prony, load.corners()));
-        let recession = recession(growth.load());
+        let recession = recession(growth.load()).map(|found| Recession {
+            effective_load: growth.to_knot(found.effective_load),
+            ..found
+        });
         Ok(Self { bed, kernel: Kernel::relaxation(prony), growth, recession })
     }
 
@@ -208,7 +211,8 @@ fn recession(load: &Hereditary) -> Option<Recession> {
             let effective_load = effective_load - jump;
             return Some(Recession { time: start, effective_load, is_jump: true });
         }
-        let length = load.duration(corner).min(load.long());
+        let duration = load.duration(corner);
+        let length = if duration.is_finite() { duration } else { load.long() };
         if length > 0.0
             && let Some(since) = load.rate(corner).first_negative(length)
         {

@@ -46,7 +46,8 @@ pub struct Relaxation<'a> {
     growth: Growth<'a>,
     /// The load that is left of it.
     relaxed: Hereditary,
-    recedes: Option<f64>,
+    /// When the approach falls for the first time, and whether it does at once.
+    recedes: Option<(f64, bool)>,
     /// When the path ends, and at which approach.
     ends: Option<(f64, f64)>,
 }
@@ -83,7 +84,7 @@ impl<'a> Relaxation<'a> {
     /// When the approach falls for the first time.
     #[must_use]
     pub fn recession(&self) -> Option<f64> {
-        self.recedes
+        self.recedes.map(|(time, _)| time)
     }
 
     /// The state just after a time. Its effective load is the elastic load at the approach.
@@ -91,19 +92,23 @@ impl<'a> Relaxation<'a> {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a time that is no number; [`CreepError::ContactRecedes`] if the approach has fallen
-    /// before; [`BedError::PathEndsBefore`] if it is beyond the path.
+    /// before; [`BedError::PathEndsBefore`] if it is or has been beyond the path.
     pub fn at(&self, time: f64) -> Result<CreepState, Error> {
         Error::require("time", time, !time.is_nan(), "a number")?;
         let effective_load = self.growth.at(time);
-        if let Some(from) = self.recedes.filter(|from| time > *from) {
+        let has_fallen =
+            |(from, is_jump): &(f64, bool)| time > *from || (*is_jump && time == *from);
+        if let Some((from, _)) = self.recedes.filter(has_fallen) {
             let effective_load = self.growth.at(from);
             return Err(CreepError::ContactRecedes { time: from, effective_load }.into());
         }
         let approach = self.approach.value_at(time);
-        if let Some((_, end)) = self.ends.filter(|(from, end)| time >= *from && approach > *end) {
-            return Err(
-                BedError::PathEndsBefore { quantity: "approach", value: approach, end }.into()
-            );
+        let is_beyond =
+            |(from, end): &(f64, f64)| time > *from || (time == *from && approach > *end);
+        if let Some((_, end)) = self.ends.filter(is_beyond) {
+            let before = self.approach.corners().iter().take_while(|corner| corner.0 <= time);
+            let value = before.fold(approach, |most, corner| most.max(corner.1));
+            return Err(BedError::PathEndsBefore { quantity: "approach", value, end }.into());
         }
         let elastic = self.bed.at_load(effective_load)?;
         let load = self.relaxed.place(time).map_or(0.0, |place| self.relaxed.relaxed(place));
@@ -133,7 +138,7 @@ impl<'a> Relaxation<'a> {
     /// When each knot of the path is reached \[s\], before contact recedes, if ever.
     #[must_use]
     pub fn times(&self) -> Vec<f64> {
-        self.growth.times(self.recedes.unwrap_or(f64::INFINITY))
+        self.growth.times(self.recession().unwrap_or(f64::INFINITY))
     }
 
     /// The pressure at a time: see [`Creep::pressure`](super::Creep::pressure).
@@ -162,7 +167,7 @@ impl<'a> Relaxation<'a> {
 struct Elastic {
     /// (time, load): linear in between, for all knots of the path are among them.
     knots: Vec<(f64, f64)>,
-    recedes: Option<f64>,
+    recedes: Option<(f64, bool)>,
     ends: Option<(f64, f64)>,
 }
 
@@ -174,7 +179,7 @@ impl Elastic {
         for &(time, value) in approach.corners() {
             let (start, from) = before.unwrap_or((time, 0.0));
             if value < from && from > 0.0 {
-                return Ok(Self { knots, recedes: Some(start), ends: None });
+                return Ok(Self { knots, recedes: Some((start, time == start)), ends: None });
             }
             // Knots on the way, which a jump passes too.
             let first = approaches.partition_point(|knot| *knot <= from.max(0.0));

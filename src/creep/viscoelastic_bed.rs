@@ -200,11 +200,11 @@ impl<'a> ViscoelasticBed<'a> {
                 Error::require("approach of a step", approach, approach.is_finite(), "finite")?;
             }
         }
-        self.steps += 1;
         if !self.attempt(duration, control)? {
             let before = self.memory();
             self.in_parts(duration, control).inspect_err(|_| self.restore(before))?;
         }
+        self.steps += 1;
         Ok(self.state)
     }
 
@@ -367,14 +367,22 @@ impl<'a> ViscoelasticBed<'a> {
             }
             left -= full;
         }
+        // All elements bear what they can, and by rounding the load is a little more.
+        if let Some(element) = known.checked_sub(1)
+            && known == self.elements.len()
+            && left <= ROUNDING * load
+        {
+            return Some(Front { element, force: self.full(step, element), separation: 0.0 });
+        }
         // The others have borne nothing yet: they are those of the path.
         let start = self.elements.get(known).map_or(f64::INFINITY, |element| element.start);
         let label = start + left * step.slope;
         let after = self.elements.partition_point(|element| element.start <= label);
         let element = after.checked_sub(1).filter(|element| *element >= known)?;
         let force = (label - self.elements[element].start) / step.slope;
-        let is_within = force <= self.elements[element].length / step.slope;
-        is_within.then_some(Front { element, force, separation: 0.0 })
+        let most = self.elements[element].length / step.slope;
+        let is_within = force <= most + ROUNDING * load;
+        is_within.then_some(Front { element, force: force.min(most), separation: 0.0 })
     }
 
     fn front_of_approach(&self, step: &Step, approach: f64) -> Option<Front> {

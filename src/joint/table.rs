@@ -182,6 +182,10 @@ impl<'a> InterfaceTableBuilder<'a> {
         let tangential_stiffness = match self.friction {
             Some(friction) => {
                 let [_, stiffness] = stiffnesses(contact)?;
+                if let Some(stiffness) = stiffness {
+                    let is_one = stiffness >= 0.0;
+                    Error::require("interfacial stiffness", stiffness, is_one, "not negative")?;
+                }
                 stiffness.map(|stiffness| stiffness / friction.compliance_ratio / area)
             }
             None => None,

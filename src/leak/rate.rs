@@ -23,7 +23,7 @@ pub struct Leak {
     /// [gas](Seal::with_gas) it is the volume at the pressure of the outlet.
     pub leak_rate: f64,
     /// Permeability along the flow, $`K_{aa} = Q L_a / (L_c \Delta p)`$ \[m³/(Pa s)\], with the sides of the grid along
-    /// and across: of a gap g everywhere it is g³/12η.
+    /// and across, and the leak rate of a liquid: of a gap g everywhere it is g³/12η.
     pub permeability: f64,
     /// Permeability across, $`K_{ca}`$ \[m³/(Pa s)\]: the mean flux across the flow over the mean pressure gradient
     /// along it. `None` on a free boundary, whose sides let nothing pass.

@@ -9,7 +9,7 @@ use crate::{Error, Grid};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct FieldDistribution {
-    /// The histogram of the nodes counted; its density has the integral 1.
+    /// The histogram of the nodes counted; its density has the integral 1 if none lies outside.
     pub histogram: Histogram,
     /// The share of nodes in contact, A/A₀.
     pub contact_share: f64,

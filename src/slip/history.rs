@@ -303,7 +303,9 @@ impl<'a> SlipHistory<'a> {
             let way = ((top * fall + change) / (top - below.ratio)).max(0.0);
             let (now, lowest) = (self.load.load, below.start.load);
             let eaten = (front.load - lowest) / way;
-            let gone = if way < fall { (now - front.load) / (fall - way) } else { f64::INFINITY };
+            // A zone that has just begun does not end: its front falls at least as fast as the load, but for rounding.
+            let ends = way < fall && now > front.load;
+            let gone = if ends { (now - front.load) / (fall - way) } else { f64::INFINITY };
             let part = 1.0_f64.min(eaten).min(gone).max(0.0);
             let load = if part < 1.0 { now - part * fall } else { target.load };
             let load = load.clamp(target.load, now);

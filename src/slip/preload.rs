@@ -207,9 +207,14 @@ impl<'a> PartialSlip<'a> {
         if beyond < 0.0 {
             let change = displacement / self.friction.displacement_per_approach();
             let stick = self.bed.at_approach((self.preload.approach - change).max(0.0))?;
-            let cycle =
-                self.cycle(self.friction.coefficient() * (self.preload.load - stick.load))?;
-            return Ok(SlipCycle { displacement, ..cycle });
+            let slipping = self.preload.load - stick.load;
+            // So small a displacement moves the stick zone by less than rounding.
+            let amplitude = if slipping > 0.0 {
+                self.friction.coefficient() * slipping
+            } else {
+                displacement * self.monotone(0.0)?.tangential_stiffness
+            };
+            return Ok(SlipCycle { displacement, ..self.cycle(amplitude)? });
         }
         let limit = self.monotone(self.sliding_load())?;
         let at_limit = self.cycle(self.sliding_load())?;
@@ -333,7 +338,12 @@ impl SlipCycle {
             displacement,
             interfacial_displacement: state.interfacial_displacement,
             dissipation,
-            secant_stiffness: amplitude / displacement,
+            // A load that moves the stick zone by less than rounding slips nothing.
+            secant_stiffness: if displacement > 0.0 {
+                amplitude / displacement
+            } else {
+                state.tangential_stiffness
+            },
             // What does not give way loses nothing.
             loss_factor: if work > 0.0 { dissipation / work } else { 0.0 },
             stick_load: state.stick_load,

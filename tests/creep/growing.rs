@@ -2,13 +2,14 @@
 
 use asperity::bed::Bed;
 use asperity::creep::{
-    ControlHistory, Creep, PiecewiseLinear, Prony, Relaxation, Steps, ViscoelasticBed,
+    Control, ControlHistory, Creep, CycleSettings, PiecewiseLinear, Prony, Relaxation, Steps,
+    Unloading, ViscoelasticBed,
 };
 use asperity::loading::History;
 use asperity::surface::HeightMap;
 use asperity::{
-    Boussinesq, CreepError, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
-    Spectral,
+    BedError, Boussinesq, CreepError, Error, Grid, InfluenceKernel, LoadingSolver,
+    PeriodicBoussinesq, Spectral,
 };
 use proptest::prelude::*;
 
@@ -251,6 +252,27 @@ fn loads_relax_at_a_given_approach() {
     assert!(falling.at(1.0).is_ok());
     let refused = falling.at(1.001);
     assert!(matches!(refused, Err(Error::Creep(CreepError::ContactRecedes { time: 1.0, .. }))));
+    // Behind a jump down not even the state at once is one of the path.
+    let jump = [(0.0, 0.0), (1.0, approach), (1.0, 0.5 * approach)];
+    let jump = Relaxation::new(&bed, &body, &PiecewiseLinear::new(jump).unwrap()).unwrap();
+    assert!(jump.at(0.999).is_ok());
+    let refused = jump.at(1.0);
+    assert!(matches!(refused, Err(Error::Creep(CreepError::ContactRecedes { time: 1.0, .. }))));
+    // Contact that has been beyond the path has no state behind it, wherever the approach is then.
+    let end = case.history.states()[99].contact.approach;
+    let short: History = case.history.states()[..100].iter().copied().collect();
+    let short = Bed::new(&short).unwrap();
+    let there = PiecewiseLinear::new([(0.0, 0.0), (1.0, 2.0 * end), (2.0, 0.5 * end)]).unwrap();
+    let there = Relaxation::new(&short, &body, &there).unwrap();
+    assert!(there.at(0.499).is_ok());
+    for time in [0.51, 1.0, 1.9, 3.0] {
+        match there.at(time) {
+            Err(Error::Bed(BedError::PathEndsBefore { value, end: found, .. })) => {
+                assert!(value > end && found == end, "{time}: {value}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
 }
 
 /// Kernels of periodic half-spaces and long cells: a held load against the solver, contact and mean gap to rounding.
@@ -330,6 +352,98 @@ fn the_end_of_the_path_has_a_time() {
     assert_eq!(weak.time_of(bed.last_load()), None);
 }
 
+/// A body that only flows: contact grows as long as the load times its fluidity outweighs the fall of the load.
+#[test]
+fn a_fluid_recedes_on_a_long_ramp() {
+    let case = free();
+    let bed = Bed::new(&case.history).unwrap();
+    let maxwell = Prony::shares(&[(1.0, 1.0)]).unwrap();
+    let load = 0.1 * bed.last_load();
+    // Wₑ = W + ∫ W dt: its rate L(−1 + 1 − z) falls at once, and L(−1/4 + 1 − z/4) behind three.
+    for (length, from) in [(1.0, 1.0), (4.0, 4.0)] {
+        let falls = PiecewiseLinear::ramp(load, 1.0).unwrap().to(0.0, length).unwrap();
+        let creep = Creep::new(&bed, &maxwell, &falls).unwrap();
+        let found = creep.recession().map(|recession| recession.time);
+        assert!(found.is_some_and(|time| (time - from).abs() < 1e-12), "{found:?}");
+        assert!(creep.at(1.0 + length).is_err() && creep.at(0.5).is_ok());
+    }
+    // Elastic bodies recede as soon as the load falls.
+    let falls = PiecewiseLinear::ramp(load, 1.0).unwrap().to(0.0, 1e9).unwrap();
+    let creep = Creep::new(&bed, &Prony::elastic(1.0).unwrap(), &falls).unwrap();
+    assert_eq!(creep.recession().map(|recession| recession.time), Some(1.0));
+}
+
+/// All that the path bears, in one step or in two, now and after creep; and not a thousandth more.
+#[test]
+fn the_whole_path_is_borne() {
+    let case = free();
+    let short: History = case.history.states()[..100].iter().copied().collect();
+    let bed = Bed::new(&short).unwrap();
+    let (last, body) = (bed.last_load(), Prony::shares(&[(1.0, 0.5)]).unwrap());
+    for part in [0.37, 0.61, 0.9] {
+        let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+        contact.step(0.0, Control::Load(part * last)).unwrap();
+        let state = contact.step(0.0, Control::Load(last)).unwrap();
+        assert!((state.effective_load / last - 1.0).abs() < 1e-11);
+        assert!(contact.step(0.0, Control::Load(1.001 * last)).is_err());
+    }
+    // A load that grows for twenty relaxation times has come to some 1.9 times itself.
+    for (load, is_borne) in [(0.5 * last, true), (0.6 * last, false)] {
+        let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+        let refused = contact.step(20.0, Control::Load(load)).is_err();
+        assert_eq!(refused, !is_borne, "{load}");
+        // A step that is refused is none: the history begins with its own corner.
+        let course = ControlHistory::Load(PiecewiseLinear::step(0.1 * last).unwrap());
+        if refused {
+            let states = contact.follow(&course, &[0.0, 1.0]).unwrap();
+            assert!((states[0].load / (0.1 * last) - 1.0).abs() < 1e-12);
+        }
+    }
+    let mut settled = ViscoelasticBed::new(&bed, &body).unwrap();
+    settled.settle(0.5 * last).unwrap();
+    // A recession from the very end of the path.
+    let course = PiecewiseLinear::step(0.5 * last).unwrap().hold(100.0).unwrap();
+    let creep = Creep::new(&bed, &body, &course.jump(0.1 * last).unwrap()).unwrap();
+    let unloading = Unloading::new(&creep).unwrap();
+    assert!(unloading.at(100.0).unwrap().contact.load < last);
+}
+
+/// A history that is asked for before its first corner has nothing there, and the corner is a jump all the same.
+#[test]
+fn nothing_bears_before_the_first_corner() {
+    let case = free();
+    let bed = Bed::new(&case.history).unwrap();
+    let load = 0.1 * bed.last_load();
+    let course = ControlHistory::Load(PiecewiseLinear::step(load).unwrap());
+    let follow = |times: &[f64]| {
+        let mut contact = ViscoelasticBed::new(&bed, &solid()).unwrap();
+        contact.follow(&course, times).unwrap()
+    };
+    let (early, from_start) = (follow(&[-1.0, 0.0, 0.5]), follow(&[0.0, 0.5]));
+    assert_eq!((early[0].time, early[0].load), (-1.0, 0.0));
+    for (a, b) in early[1..].iter().zip(&from_start) {
+        assert_eq!((a.time, a.load, a.approach), (b.time, b.load, b.approach));
+    }
+}
+
+/// In full contact of a periodic half-space mean planes come no closer: a cycle is steady at once, and loses nothing.
+#[test]
+fn a_cycle_in_full_contact_is_steady() {
+    let grid = Grid::square(8, 1.0).unwrap();
+    let case = case(Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()), 2);
+    let bed = Bed::new(&case.history).unwrap();
+    let load = bed.last_load();
+    let mut contact = ViscoelasticBed::new(&bed, &solid()).unwrap();
+    let cycle = contact.cycle(3.0 * load, 0.1 * load, 1.0, CycleSettings::default()).unwrap();
+    assert!(cycle.approach_amplitude.abs() < 1e-14 && cycle.dissipation.abs() < 1e-14 * load);
+    assert!(cycle.cycles < 50, "{}", cycle.cycles);
+    for tolerance in [0.0, f64::NAN] {
+        let settings = CycleSettings { tolerance, ..CycleSettings::default() };
+        let refused = contact.cycle(3.0 * load, 0.1 * load, 1.0, settings);
+        assert!(matches!(refused, Err(Error::NotPositive { .. })), "{refused:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
@@ -339,6 +453,7 @@ proptest! {
     fn contact_recedes_where_the_effective_load_first_falls(
         terms in prop::collection::vec((-4.0..4.0_f64, 0.05..0.3_f64), 1..4),
         corners in prop::collection::vec((0.0..1.0_f64, -4.0..3.0_f64, prop::bool::weighted(0.2)), 1..8),
+        flows in prop::bool::ANY,
     ) {
         let case = (1..40).map(|k| {
             let grid = Grid::square(8, 1.0).unwrap();
@@ -349,7 +464,10 @@ proptest! {
         });
         let history: History = case.collect();
         let bed = Bed::new(&history).unwrap();
-        let terms: Vec<_> = terms.iter().map(|t| (10_f64.powf(t.0), t.1)).collect();
+        let mut terms: Vec<_> = terms.iter().map(|t| (10_f64.powf(t.0), t.1)).collect();
+        if flows {
+            terms[0].1 += 1.0 - terms.iter().map(|term| term.1).sum::<f64>();
+        }
         let body = Prony::shares(&terms).unwrap();
         let mut all = vec![(0.0, 0.0)];
         for (load, duration, jumps) in corners {

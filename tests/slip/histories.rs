@@ -152,6 +152,31 @@ proptest! {
     }
 }
 
+/// A history that comes back to no tangential load and goes on with one of rounding ends: the front of a slip zone that
+/// has just begun does not stay where it is.
+#[test]
+fn tangential_loads_of_rounding_end() {
+    let grid = Grid::new(16, 12, 1.0, 1.5).unwrap();
+    let (_, history) = path(1);
+    let scale = 410.0 / Bed::new(&history).unwrap().last_load();
+    let half_space = Boussinesq::new(grid, 2.0 * scale).unwrap();
+    let (_, history) = rough_path(&half_space, 1, 0.7);
+    let bed = Bed::new(&history).unwrap();
+    let friction = Friction::new(0.3, 1.0).unwrap();
+    for force in 1..110 {
+        for low in [6.0, 96.0, 130.0, 201.0] {
+            for rest in [1e-20, -1e-20, 1e-17, 0.0] {
+                let mut joint = SlipHistory::new(&bed, friction);
+                joint.to(400.0, 0.0).unwrap();
+                joint.to(400.0, f64::from(force)).unwrap();
+                joint.to(400.0, 0.0).unwrap();
+                let state = joint.to(low, rest).unwrap();
+                assert!((state.tangential_load - rest).abs() < 1e-11, "{force} {low} {rest}");
+            }
+        }
+    }
+}
+
 /// Masing: a branch behind a turn is the first loading, twice as large in both directions.
 #[test]
 fn branches_are_the_first_loading_doubled() {
@@ -166,6 +191,14 @@ fn branches_are_the_first_loading_doubled() {
     let first = joint.monotone(0.85 * limit).unwrap();
     assert_same(&turn, &first, 1e-13, [limit, first.displacement]);
     assert_eq!((turn.stick_nodes, turn.slipping_nodes), (first.stick_nodes, first.slipping_nodes));
+    // So little that no node slips.
+    for cycle in
+        [joint.cycle(1e-18 * limit), joint.cycle_of_displacement(1e-20 * turn.displacement)]
+    {
+        let (cycle, stuck) = (cycle.unwrap(), joint.monotone(0.0).unwrap());
+        assert!(relative(cycle.secant_stiffness, stuck.tangential_stiffness) < 1e-13);
+        assert_eq!(cycle.dissipation, 0.0);
+    }
     for share in [0.8, 0.5, 0.0, -0.4, -0.85] {
         let branch = history.to(load, share * limit).unwrap();
         let half = joint.monotone(0.5 * (0.85 - share) * limit).unwrap();
