@@ -1110,5 +1110,5 @@ def _restore_history(
     table: dict[str, NDArray[Any]], setting: tuple[tuple[int, int], tuple[float, float], str, bool], layering: str
 ) -> History: ...
 def _restore_solution(
-    data: bytes, setting: tuple[tuple[int, int], tuple[float, float], bool, bool]
+    data: bytes, setting: tuple[tuple[int, int], tuple[float, float], str, bool]
 ) -> Solution: ...

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,6 +37,24 @@ __all__ = [
     "StressSurvey",
     "Trend",
 ]
+
+
+def _is_same(one: object, other: object) -> bool:
+    """Whether two values are the same: arrays node by node, and NaN as NaN."""
+    numbers = (np.ndarray, float)
+    if isinstance(one, numbers) and isinstance(other, numbers):
+        return bool(np.array_equal(one, other, equal_nan=True))
+    return bool(one == other)
+
+
+@dataclass(frozen=True, eq=False)
+class _WithArrays:
+    """A result with arrays: the same as one with the same numbers, and without a hash."""
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(_is_same(getattr(self, one.name), getattr(other, one.name)) for one in fields(self))
 
 
 @dataclass(frozen=True)
@@ -128,8 +146,8 @@ class Percolation:
     leak_y: State | None
 
 
-@dataclass(frozen=True)
-class Distribution:
+@dataclass(frozen=True, eq=False)
+class Distribution(_WithArrays):
     """How often the values of a field occur.
 
     Attributes
@@ -146,15 +164,15 @@ class Distribution:
         The share of nodes in contact.
     """
 
-    edges: NDArray[np.float64] = field(compare=False)
-    counts: NDArray[np.int64] = field(compare=False)
-    density: NDArray[np.float64] = field(compare=False)
+    edges: NDArray[np.float64]
+    counts: NDArray[np.int64]
+    density: NDArray[np.float64]
     outside: int
     contact_share: float
 
 
-@dataclass(frozen=True)
-class PowerSpectrum:
+@dataclass(frozen=True, eq=False)
+class PowerSpectrum(_WithArrays):
     """A power spectral density: of a surface [m⁴], or of profiles [m³].
 
     Attributes
@@ -167,9 +185,9 @@ class PowerSpectrum:
         Their number.
     """
 
-    wavevector: NDArray[np.float64] = field(compare=False)
-    density: NDArray[np.float64] = field(compare=False)
-    waves: NDArray[np.int64] = field(compare=False)
+    wavevector: NDArray[np.float64]
+    density: NDArray[np.float64]
+    waves: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -392,8 +410,8 @@ class CriticalConstriction:
     dissipation: float
 
 
-@dataclass(frozen=True)
-class Leak:
+@dataclass(frozen=True, eq=False)
+class Leak(_WithArrays):
     """The leak through a gap map.
 
     Attributes
@@ -429,18 +447,18 @@ class Leak:
     transverse_permeability: float
     mean_field_leak_rate: float
     constriction: CriticalConstriction | None
-    pressure: NDArray[np.float64] = field(compare=False, repr=False)
-    flux_x: NDArray[np.float64] = field(compare=False, repr=False)
-    flux_y: NDArray[np.float64] = field(compare=False, repr=False)
-    sections: NDArray[np.float64] = field(compare=False, repr=False)
+    pressure: NDArray[np.float64] = field(repr=False)
+    flux_x: NDArray[np.float64] = field(repr=False)
+    flux_y: NDArray[np.float64] = field(repr=False)
+    sections: NDArray[np.float64] = field(repr=False)
     imbalance: float
     flowing_nodes: int
     pools: int
     iterations: int
 
 
-@dataclass(frozen=True)
-class LeakCurve:
+@dataclass(frozen=True, eq=False)
+class LeakCurve(_WithArrays):
     """The leak rate along a path, in the order of loading.
 
     Attributes
@@ -461,16 +479,16 @@ class LeakCurve:
     """
 
     states: list[State]
-    load: NDArray[np.float64] = field(compare=False)
-    mean_pressure: NDArray[np.float64] = field(compare=False)
-    area_fraction: NDArray[np.float64] = field(compare=False)
-    mean_gap: NDArray[np.float64] = field(compare=False)
-    leak_rate: NDArray[np.float64] = field(compare=False)
-    mean_field_leak_rate: NDArray[np.float64] = field(compare=False)
-    permeability: NDArray[np.float64] = field(compare=False)
-    transverse_permeability: NDArray[np.float64] = field(compare=False)
+    load: NDArray[np.float64]
+    mean_pressure: NDArray[np.float64]
+    area_fraction: NDArray[np.float64]
+    mean_gap: NDArray[np.float64]
+    leak_rate: NDArray[np.float64]
+    mean_field_leak_rate: NDArray[np.float64]
+    permeability: NDArray[np.float64]
+    transverse_permeability: NDArray[np.float64]
     constrictions: list[CriticalConstriction | None]
-    imbalance: NDArray[np.float64] = field(compare=False)
+    imbalance: NDArray[np.float64]
     closing: State | None
 
 
@@ -494,8 +512,8 @@ class GreatestStress:
     column: int
 
 
-@dataclass(frozen=True)
-class StressField:
+@dataclass(frozen=True, eq=False)
+class StressField(_WithArrays):
     """The stresses at a depth; tension is positive, z points into the body.
 
     Attributes
@@ -513,20 +531,20 @@ class StressField:
     """
 
     depth: float
-    xx: NDArray[np.float64] = field(compare=False, repr=False)
-    yy: NDArray[np.float64] = field(compare=False, repr=False)
-    zz: NDArray[np.float64] = field(compare=False, repr=False)
-    yz: NDArray[np.float64] = field(compare=False, repr=False)
-    xz: NDArray[np.float64] = field(compare=False, repr=False)
-    xy: NDArray[np.float64] = field(compare=False, repr=False)
-    von_mises: NDArray[np.float64] = field(compare=False, repr=False)
-    tresca: NDArray[np.float64] = field(compare=False, repr=False)
-    greatest_shear: NDArray[np.float64] = field(compare=False, repr=False)
-    greatest_tension: NDArray[np.float64] = field(compare=False, repr=False)
+    xx: NDArray[np.float64] = field(repr=False)
+    yy: NDArray[np.float64] = field(repr=False)
+    zz: NDArray[np.float64] = field(repr=False)
+    yz: NDArray[np.float64] = field(repr=False)
+    xz: NDArray[np.float64] = field(repr=False)
+    xy: NDArray[np.float64] = field(repr=False)
+    von_mises: NDArray[np.float64] = field(repr=False)
+    tresca: NDArray[np.float64] = field(repr=False)
+    greatest_shear: NDArray[np.float64] = field(repr=False)
+    greatest_tension: NDArray[np.float64] = field(repr=False)
 
 
-@dataclass(frozen=True)
-class StressSurvey:
+@dataclass(frozen=True, eq=False)
+class StressSurvey(_WithArrays):
     """The greatest stresses at each depth, and over all.
 
     Attributes
@@ -539,11 +557,11 @@ class StressSurvey:
         Of each of these names over all depths.
     """
 
-    depth: NDArray[np.float64] = field(compare=False)
-    von_mises: NDArray[np.float64] = field(compare=False)
-    tresca: NDArray[np.float64] = field(compare=False)
-    greatest_shear: NDArray[np.float64] = field(compare=False)
-    greatest_tension: NDArray[np.float64] = field(compare=False)
+    depth: NDArray[np.float64]
+    von_mises: NDArray[np.float64]
+    tresca: NDArray[np.float64]
+    greatest_shear: NDArray[np.float64]
+    greatest_tension: NDArray[np.float64]
     greatest: dict[str, GreatestStress]
 
 
@@ -630,8 +648,8 @@ class SlipCycle:
     has_few_nodes: bool
 
 
-@dataclass(frozen=True)
-class Cycle:
+@dataclass(frozen=True, eq=False)
+class Cycle(_WithArrays):
     """A steady cycle of the load of viscoelastic bodies.
 
     Attributes
@@ -663,7 +681,7 @@ class Cycle:
     dissipation: float
     stiffness: float
     loss_factor: float
-    approach: NDArray[np.float64] = field(compare=False, repr=False)
-    load: NDArray[np.float64] = field(compare=False, repr=False)
+    approach: NDArray[np.float64] = field(repr=False)
+    load: NDArray[np.float64] = field(repr=False)
     cycles: int
     distance: float

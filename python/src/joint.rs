@@ -140,7 +140,7 @@ pub(crate) struct InterfaceTable {
 /// resistivity : float, optional
 ///     The sum of both bodies [m K/W or ohm m], for conductances.
 /// carrier, e_star, gap
-///     As of `conductance`.
+///     As of `conductance`; the last two go together with resistivity.
 /// friction : float, optional
 ///     Coefficient of friction, for tangential stiffness and slip limit; with bodies or their ratio of compliances.
 /// bodies : (body, body), optional
@@ -168,6 +168,12 @@ fn interface_table(
     compliance_ratio: Option<f64>,
     tolerance: f64,
 ) -> Fallible<InterfaceTable> {
+    choose("carrier", carrier, &CARRIERS)?;
+    if resistivity.is_none() && (gap.is_some() || e_star.is_some()) {
+        return Err(Failure::arguments(
+            "gap and e_star are for conductances: give resistivity too",
+        ));
+    }
     let increments = Increments::of(path)?;
     let history = match (resistivity, friction) {
         (None, None) => Arc::clone(&increments.history),

@@ -1,6 +1,7 @@
 //! Stress below the surface.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 use asperity::Error;
 use asperity::nalgebra::DMatrix;
@@ -11,7 +12,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Found, Kind, Lengths, column, rows};
 use crate::choice::Repeats;
-use crate::compute::detached;
+use crate::compute::{cancellable, detached};
 use crate::elastic_path::ElasticPath;
 use crate::errors::{Failure, Fallible};
 use crate::path::LoadingPath;
@@ -33,7 +34,7 @@ pub(crate) struct Stress {
 /// ----------
 /// path : LoadingPath
 /// poissons_ratio : float, optional
-///     Of the body; that of the first body of the path if it knows it. Layers have their own.
+///     Of the body; that of the first body of the path if it knows it. Layers have their own, and take none.
 /// state : State, optional
 ///     One of the path so far, or one that `History.at` has read from it; the last one if not given.
 /// friction : float
@@ -193,6 +194,11 @@ fn of_path(
     let below = path.with_record(py, |_, record| of_record(record))?.ok_or_else(|| {
         Failure::arguments("give poissons_ratio, unless the path knows its bodies")
     })?;
+    if poissons_ratio.is_some() && below.layers().is_some() {
+        return Err(Failure::arguments(
+            "poissons_ratio is that of a homogeneous body, and this path is on layers, which have their own",
+        ));
+    }
     Ok(below.sliding(friction, angle.to_radians())?)
 }
 
@@ -256,7 +262,15 @@ impl Stress {
     ) -> Fallible<Bound<'py, PyAny>> {
         let depths = depths.map(|depths| Found::of(depths, "depths", Kind::Real)?.list());
         let depths = depths.transpose()?;
-        let survey = detached(py, || self.below.survey(&self.pressure, depths.as_deref()))??;
+        let (below, pressure) = (self.below.clone(), self.pressure.clone());
+        let survey = cancellable(py, move |is_left| {
+            below.survey_with(&pressure, depths.as_deref(), |_| {
+                match is_left.load(Ordering::Relaxed) {
+                    true => Err(Failure::arguments("nobody waits for this survey any more")),
+                    false => Ok(()),
+                }
+            })
+        })??;
         let fields = PyDict::new(py);
         let depth = survey.depths.iter().map(|depth| depth.depth).collect::<Vec<f64>>();
         fields.set_item("depth", column(py, depth))?;

@@ -17,7 +17,8 @@ pub(crate) fn warn(py: Python<'_>, message: &str) -> Fallible<()> {
     Ok(PyErr::warn(py, &class, &text, 1)?)
 }
 
-/// What looks wrong with a contact; with its greatest pressure if a modulus is given.
+/// What looks wrong with a contact; with its greatest pressure if a modulus is given. It looks for the patches of the whole
+/// grid: without the lock of the interpreter.
 pub(crate) fn of_contact(
     pressure: &DMatrix<f64>,
     contact_map: &DMatrix<bool>,

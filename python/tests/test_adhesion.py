@@ -42,6 +42,7 @@ def test_both_branches_are_those_of_the_program(surface: asp.Surface, program: C
     pressure, gap = path.pressure(), path.gap()
     unloading = path.unload()
     columns = path.states.columns()
+    assert all(hasattr(path.states[-1], name) for name in columns)
     assert len(path.states) == len(loading) + len(unloading) == len(stored["load"])
     names = {"ix": "column", "iy": "row", "contact_area_fraction": "area_fraction", "energy": "elastic_energy"}
     for name in (
@@ -123,7 +124,12 @@ def test_what_is_refused(surface: asp.Surface, tmp_path: Path) -> None:
         asp.load_path(surface, SOFT, adhesion=asp.Adhesion(0.05, adhesion_range=1e-9))
     assert steep.value.kind == "AdhesionUnresolved" and steep.value.cell_needed < SIDE / 32
     with pytest.raises(errors.AsperityError, match="work of adhesion"):
-        asp.load_path(surface, SOFT, adhesion=asp.Adhesion(-1.0))
+        asp.Adhesion(-1.0)
+    for name in ("adhesion_range", "cohesive_stress"):
+        for hostile in (-1.0, 0.0, np.nan):
+            with pytest.raises(errors.AsperityError) as wrong:
+                asp.Adhesion(0.05, **{name: hostile})
+            assert wrong.value.kind == "NotPositive"
     stiff = asp.HalfSpace.layered([("steel", 6e-6)], (3e9, 0.3), "free")
     with pytest.raises(errors.AsperityError) as unknown:
         asp.load_path(surface, stiff, adhesion=STICKY, check=False)

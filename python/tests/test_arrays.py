@@ -189,6 +189,18 @@ def test_topographies_that_are_not_all_there() -> None:
         asp.Surface(Raises())
 
 
+def test_pieces_and_sums_of_periodic_surfaces() -> None:
+    whole, edged = (asp.Surface(Odd(is_periodic=periodic)) for periodic in (True, False))
+    rows, columns = whole.shape
+    unknown = asp.Surface(INTEGERS.T, (1.0, 1.0))
+    assert [unknown.shape, unknown.is_periodic] == [(rows, columns), None]
+    for same in (whole.crop(), whole.crop((0, rows), (0, columns)), whole.flip("x"), whole + whole):
+        assert same.is_periodic is True
+    for piece in (whole.crop(rows=(1, rows)), whole.crop(columns=(0, columns - 1)), whole + unknown, unknown + whole):
+        assert piece.is_periodic is None
+    assert (whole + edged).is_periodic is False and (edged + whole).is_periodic is False
+
+
 def test_what_comes_out_is_new_and_in_order(free_surface: asp.Surface, unit_half_space: asp.HalfSpace) -> None:
     path = asp.load_path(free_surface, unit_half_space, nodes=20, check=False)
     history = path.run(check=False)

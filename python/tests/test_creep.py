@@ -10,6 +10,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -164,6 +165,7 @@ def test_cycles(path: asp.LoadingPath) -> None:
     modulus = 0.6 + 0.4 * 1j / (1 + 1j)
     assert cycle.loss_factor == pytest.approx(np.sin(np.angle(modulus)), rel=0.05)
     assert cycle.approach.shape == cycle.load.shape and cycle.cycles >= 2
+    assert pickle.loads(pickle.dumps(cycle)) == cycle != replace(cycle, load=2.0 * cycle.load)
     assert cycle.stiffness == pytest.approx(cycle.amplitude / cycle.approach_amplitude)
     with pytest.raises(errors.AsperityError) as info:
         asp.steady_cycle(path, asp.Prony.shares([(1.0, 1.0)]), mean_load=load, amplitude=0.1 * load, period=1.0)

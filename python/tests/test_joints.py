@@ -85,6 +85,12 @@ def test_tables(path: asp.LoadingPath) -> None:
     for arguments in ({"friction": 0.3}, {"compliance_ratio": 1.0}, {"friction": 0.3, "compliance_ratio": 1.0, "bodies": ("steel", "rigid")}):
         with pytest.raises(ValueError, match="together"):
             asp.interface_table(path, **arguments)  # type: ignore[arg-type]
+    # What nothing would be made of.
+    for arguments in ({"gap": (0.026, 0.0)}, {"e_star": 1e11}, {"gap": (0.026, 0.0), "friction": 0.3, "compliance_ratio": 1.0}):
+        with pytest.raises(errors.AsperityError, match="resistivity"):
+            asp.interface_table(path, **arguments)  # type: ignore[arg-type]
+    with pytest.raises(errors.AsperityError, match="carrier must be"):
+        asp.interface_table(path, carrier="heta")  # type: ignore[arg-type]
     for hostile in (0.0, -1.0, np.nan, np.inf):
         for name in ("resistivity", "tolerance", "friction"):
             arguments = {"compliance_ratio": 1.0} if name == "friction" else {}

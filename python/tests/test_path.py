@@ -376,6 +376,22 @@ def test_yielding_and_the_way_back(rough: asp.Surface, body: asp.HalfSpace) -> N
         elastic.unload()
 
 
+def test_the_way_back_with_the_updater_of_the_path(body: asp.HalfSpace, tmp_path: Path) -> None:
+    """Of a live path and of one that was opened: the same states with a factor and without."""
+    path = asp.load_path(asp.example_surface(nodes=32), body, area_fraction=0.2, hardness=2.5e9, updater="iterative", check=False)
+    path.run(check=False)
+    path.save(tmp_path / "path.npz")
+    ways = [path, *(asp.open(tmp_path / "path.npz", updater=updater) for updater in ("iterative", "cholesky"))]
+    loads = path.state.load * np.linspace(0.1, 0.9, 9)
+    approaches = []
+    for way in ways:
+        back = way.unload().columns()
+        assert back["load"][0] == path.state.load
+        approaches.append(np.interp(loads, back["load"][::-1], back["approach"][::-1]))
+    for found in approaches[1:]:
+        np.testing.assert_allclose(found, approaches[0], rtol=1e-6)
+
+
 def test_a_path_ends_where_all_nodes_have_yielded(body: asp.HalfSpace) -> None:
     surface = asp.example_surface(nodes=16, short_cutoff=2.5e-3)
     path = asp.load_path(surface, body, hardness=2e8, check=False)

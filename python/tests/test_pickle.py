@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -79,6 +80,31 @@ def test_small_results_and_errors(path: asp.LoadingPath) -> None:
         asp.open("nothing.npz")
     again = pickle.loads(pickle.dumps(missing.value))
     assert (again.filename, again.errno) == ("nothing.npz", 2) and "nothing.npz" in str(again)
+
+
+def test_results_with_arrays_are_compared_by_their_numbers() -> None:
+    """Every array counts, and NaN is NaN: across a free boundary nothing has a permeability."""
+    rough = asp.example_surface(nodes=32)
+    smooth, gap = rough.scaled(0.5), rough.z.max() - rough.z
+    pressure, none, size = np.where(gap < 1e-6, 1e9, 0.0), gap < 0.0, rough.size
+    pressure[3, 4] = 1e9
+    pairs = [
+        tuple(surface.psd() for surface in (rough, smooth)),
+        tuple(surface.psd_along("x") for surface in (rough, smooth)),
+        tuple(asp.gap_distribution(gap, none, bins=bins) for bins in (4, 5)),
+        tuple(asp.stress_of(pressure, size, ratio, periodic=False).survey([0.0, 1e-4]) for ratio in (0.2, 0.3)),
+        tuple(asp.stress_of(pressure, size, ratio, periodic=False).at_depth(1e-4) for ratio in (0.2, 0.3)),
+        tuple(asp.Seal(1e-3, drop, along="x").leak_of(gap, none, size, periodic=False) for drop in (1e5, 2e5)),
+    ]
+    for one, other in pairs:
+        again = pickle.loads(pickle.dumps(one))
+        assert again == one and not again != one and one != other and one != 1
+        arrays = {name: values for name, values in vars(one).items() if isinstance(values, np.ndarray)}
+        for name, values in arrays.items():
+            assert replace(one, **{name: values + 1}) != one, name
+            assert replace(one, **{name: values[:-1]}) != one, name
+        with pytest.raises(TypeError, match="unhashable"):
+            hash(one)
 
 
 def test_what_is_under_way_is_not_pickled(path: asp.LoadingPath) -> None:

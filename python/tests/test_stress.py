@@ -41,7 +41,7 @@ def test_the_stress_of_the_program(program: Callable[..., str], tmp_path: Path) 
     assert first is not None and first.state.load == told["bodies"][0]["materials"][0]["first_yield"]["load"]
     assert first.greatest.value == pytest.approx(1e9, rel=1e-4)
     assert asp.first_yield(path, 1e15) is None
-    assert pickle.loads(pickle.dumps(survey)).greatest == survey.greatest
+    assert pickle.loads(pickle.dumps(survey)) == survey
 
 
 def test_each_material_yields_by_itself(program: Callable[..., str], tmp_path: Path) -> None:
@@ -109,6 +109,14 @@ def test_what_has_no_answer_is_refused() -> None:
         asp.stress(path, friction=0.1)
     coated = asp.stress(path)
     assert coated.poissons_ratio == 0.25
+    # Layers have ratios of their own.
+    for ask in (
+        lambda: asp.stress(path, 0.3),
+        lambda: asp.first_yield(path, 1e9, 0.3),
+        lambda: asp.first_yields(path, [1e9, 1e9], 0.3),
+    ):
+        with pytest.raises(errors.AsperityError, match="have their own"):
+            ask()
     # The coat and what lies below it differ in what they bear along the interface alone.
     upper, lower = coated.at_depth(1e-5), coated.at_depth(np.nextafter(1e-5, 1.0))
     np.testing.assert_allclose(upper.zz, lower.zz, atol=1e-8 * coated.pressure.max())

@@ -114,6 +114,21 @@ def test_ctrl_c_in_a_single_load() -> None:
 
 
 @pytest.mark.skipif(not POSIX, reason="signals of POSIX")
+def test_ctrl_c_in_a_survey_of_stresses() -> None:
+    """The wait ends at once, and what is under way ends at its next depth."""
+    pressure = np.zeros((256, 256))
+    pressure[100:150, 100:150] = 1e9
+    below = asp.stress_of(pressure, 1e-3, 0.3, periodic=False)
+    timer = threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        below.survey(np.linspace(1e-6, 1e-4, 5000))
+    assert time.monotonic() - start < 5.0
+    assert below.survey([1e-5]).depth.tolist() == [1e-5]
+
+
+@pytest.mark.skipif(not POSIX, reason="signals of POSIX")
 def test_ctrl_c_in_a_sweep() -> None:
     """What was under way comes next."""
     surface = asp.example_surface(nodes=512)

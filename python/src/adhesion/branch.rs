@@ -172,7 +172,7 @@ impl AdhesiveState {
 
 /// The states of a branch of a path with adhesion, or of several that follow each other.
 ///
-/// A sequence of `AdhesiveState`. Columns are arrays, with the names of `path.csv` of the program.
+/// A sequence of `AdhesiveState`, whose names its columns have.
 #[pyclass(frozen, eq, sequence, module = "asperity")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct AdhesiveBranch {

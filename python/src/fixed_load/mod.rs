@@ -129,7 +129,10 @@ fn solve(
     if check {
         let e_star = half_space.modulus().filter(|_| solved.contact.plastic.is_none());
         let on = (&grid, boundary);
-        warn_all(py, of_contact(&solved.fields.pressure, &solved.fields.contact_map, on, e_star)?)?;
+        let fields = &solved.fields;
+        let found =
+            detached(py, || of_contact(&fields.pressure, &fields.contact_map, on, e_star))??;
+        warn_all(py, found)?;
     }
     Ok(Solution::new(solved, setting))
 }

@@ -13,7 +13,7 @@ use pyo3::sync::MutexExt;
 
 use super::{Settings, Solution, solver};
 use crate::arrays::{Found, Kind};
-use crate::compute::{Answers, pool, wait};
+use crate::compute::{Answers, detached, pool, wait};
 use crate::errors::{Failure, Fallible};
 use crate::given::warn_of;
 use crate::half_space::HalfSpace;
@@ -100,15 +100,11 @@ impl LoadSweep {
                 if self.check {
                     let e_star = self.e_star.filter(|_| solution.contact.plastic.is_none());
                     let on = (&self.setting.grid, self.setting.boundary);
-                    warn_all(
-                        py,
-                        of_contact(
-                            &solution.fields.pressure,
-                            &solution.fields.contact_map,
-                            on,
-                            e_star,
-                        )?,
-                    )?;
+                    let fields = &solution.fields;
+                    let found = detached(py, || {
+                        of_contact(&fields.pressure, &fields.contact_map, on, e_star)
+                    })??;
+                    warn_all(py, found)?;
                 }
                 Ok(Some(Solution::new(solution, self.setting)))
             }

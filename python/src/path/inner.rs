@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use asperity::loading::{self, LoadingEnd};
+use asperity::loading::{self, LoadingBuilder, LoadingEnd};
 use asperity::record::LoadingRecord;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{ContactEvent, ContactTarget, Error, InfluenceKernel, LoadingSolver, LoadingState};
@@ -11,7 +11,7 @@ use asperity::{ContactEvent, ContactTarget, Error, InfluenceKernel, LoadingSolve
 use super::Engine;
 
 /// An updater of any kind.
-pub(super) type AnyUpdater = Box<dyn LinearUpdater>;
+type AnyUpdater = Box<dyn LinearUpdater>;
 
 /// The solver of the linear systems.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ impl Updater {
     pub(super) const WORDS: [(&'static str, Self); 3] =
         [("auto", Self::Auto), ("cholesky", Self::Cholesky), ("iterative", Self::Iterative)];
 
-    pub(super) fn make(self) -> AnyUpdater {
+    fn make(self) -> AnyUpdater {
         match self {
             Self::Auto => Box::new(Handover::new()),
             Self::Cholesky => Box::new(RecursiveCholesky::new()),
@@ -37,19 +37,29 @@ impl Updater {
 /// A kernel that a path is made with again.
 pub(super) type Kernel = Box<dyn InfluenceKernel + Send + Sync>;
 
-/// What a record goes on with.
-pub(super) struct Resume {
-    pub(super) kernel: Kernel,
+/// With what a path is computed.
+#[derive(Clone, Copy)]
+pub(super) struct Means {
     pub(super) updater: Updater,
     pub(super) memory_budget: Option<usize>,
+}
+
+impl Means {
+    pub(super) fn give(self, builder: LoadingBuilder<'_>) -> LoadingBuilder<'_, AnyUpdater> {
+        let builder = builder.updater(self.updater.make());
+        match self.memory_budget {
+            Some(bytes) => builder.memory_budget(bytes),
+            None => builder,
+        }
+    }
 }
 
 /// Where the states come from.
 enum Source {
     /// A path that goes on.
     Live(Box<Engine>),
-    /// A record: its path as it was, for fields, and what it takes to go on.
-    Record { record: Box<LoadingRecord>, replay: Box<Engine>, resume: Resume },
+    /// A record: its path as it was, for fields, and the kernel on which it goes on.
+    Record { record: Box<LoadingRecord>, replay: Box<Engine>, kernel: Kernel },
 }
 
 /// A path with its states.
@@ -58,21 +68,26 @@ pub(super) struct Inner {
     pub(super) history: Arc<loading::History>,
     /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body, if they are known.
     pub(super) bodies: Vec<(f64, f64)>,
+    pub(super) means: Means,
 }
 
 impl Inner {
-    pub(super) fn live(engine: Engine, bodies: &[(f64, f64)]) -> Self {
+    pub(super) fn live(engine: Engine, bodies: &[(f64, f64)], means: Means) -> Self {
         let layering = engine.problem().table().origin().layering();
         let history = Arc::new(loading::History::default().on(layering));
-        Self { source: Source::Live(Box::new(engine)), history, bodies: bodies.to_vec() }
+        Self { source: Source::Live(Box::new(engine)), history, bodies: bodies.to_vec(), means }
     }
 
-    pub(super) fn of_record(record: LoadingRecord, resume: Resume) -> Result<Self, Error> {
-        let replay = Box::new(record.replay_on(&*resume.kernel)?);
+    pub(super) fn of_record(
+        record: LoadingRecord,
+        kernel: Kernel,
+        means: Means,
+    ) -> Result<Self, Error> {
+        let replay = Box::new(record.replay_on(&*kernel)?);
         let history = Arc::new(record.history().clone());
         let bodies = record.bodies().to_vec();
-        let source = Source::Record { record: Box::new(record), replay, resume };
-        Ok(Self { source, history, bodies })
+        let source = Source::Record { record: Box::new(record), replay, kernel };
+        Ok(Self { source, history, bodies, means })
     }
 
     /// What computes fields.
@@ -117,19 +132,15 @@ impl Inner {
 
     /// A path that goes on, of a record made again: the factor is built anew.
     fn revive(&mut self) -> Result<&mut Engine, Error> {
-        if let Source::Record { record, resume, .. } = &self.source {
+        if let Source::Record { record, kernel, .. } = &self.source {
             let hardness = record.hardness_map()?;
-            let mut builder = LoadingSolver::builder(record.heights(), &*resume.kernel)
-                .updater(resume.updater.make())
-                .rule(record.settings().rule);
+            let builder = LoadingSolver::builder(record.heights(), &**kernel);
+            let mut builder = self.means.give(builder).rule(record.settings().rule);
             for &target in &record.settings().targets {
                 builder = builder.until(target);
             }
             if let Some(hardness) = &hardness {
                 builder = builder.hardness_map(hardness);
-            }
-            if let Some(bytes) = resume.memory_budget {
-                builder = builder.memory_budget(bytes);
             }
             self.source = Source::Live(Box::new(builder.resume(record.history())?.into_path()));
         }

@@ -505,7 +505,7 @@ impl LoadingPath {
         Ok(Surface::new(*self.grid(), map.into_matrix())?)
     }
 
-    /// Unload from the last state, elastically: what yielded stays.
+    /// Unload from the last state, elastically: what yielded stays. The updater and the memory budget are those of the path.
     ///
     /// Returns
     /// -------

@@ -7,7 +7,7 @@ use asperity::{AdhesionError, ContactRule, Error, LoadingSolver};
 use pyo3::prelude::*;
 
 use super::LoadingPath;
-use super::inner::{Inner, Resume, Updater};
+use super::inner::{Inner, Means, Updater};
 use crate::adhesion::{Adhesion, AdhesivePath, set_up};
 use crate::choice::choose;
 use crate::compute::detached;
@@ -126,9 +126,9 @@ fn load_path<'py>(
         let path = set_up(py, &surface, (&*kernel, law), settings, (e_star, check))?;
         return Ok(path.into_pyobject(py)?.into_any());
     }
+    let means = Means { updater, memory_budget };
     let solver = detached(py, move || {
-        let mut builder =
-            LoadingSolver::builder(topography, &*kernel).updater(updater.make()).rule(rule);
+        let mut builder = means.give(LoadingSolver::builder(topography, &*kernel)).rule(rule);
         for target in targets {
             builder = builder.until(target);
         }
@@ -143,12 +143,9 @@ fn load_path<'py>(
         if let Some(size) = window_size {
             builder = builder.window_size(size);
         }
-        if let Some(bytes) = memory_budget {
-            builder = builder.memory_budget(bytes);
-        }
         builder.build()
     })??;
-    let inner = Inner::live(solver.into_path(), half_space.elastic_bodies());
+    let inner = Inner::live(solver.into_path(), half_space.elastic_bodies(), means);
     Ok(LoadingPath::new(inner, half_space.modulus()).into_pyobject(py)?.into_any())
 }
 
@@ -206,8 +203,8 @@ fn open<'py>(
         (None, None) => return Err(asperity::Error::ForeignKernel.into()),
     };
     let (kernel, e_star) = (body.kernel(py, record.grid())?, body.modulus());
-    let resume = Resume { kernel, updater, memory_budget };
-    let inner = detached(py, || Inner::of_record(record, resume))??;
+    let means = Means { updater, memory_budget };
+    let inner = detached(py, || Inner::of_record(record, kernel, means))??;
     Ok(LoadingPath::new(inner, e_star).into_pyobject(py)?.into_any())
 }
 

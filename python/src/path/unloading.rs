@@ -29,12 +29,13 @@ pub(crate) struct Unloading {
 
 pub(super) fn unload(path: &Bound<'_, LoadingPath>) -> Fallible<Unloading> {
     let (py, this) = (path.py(), path.get());
-    let (last, map, kernel) = {
+    let (last, map, kernel, means) = {
         let mut inner = this.lock(py);
         let last = LoadingPath::state_or_last(&inner, None)?;
+        let means = inner.means;
         let engine = inner.engine_mut();
         let map = detached(py, || engine.residual_surface_at(&last))??;
-        (last, map, engine.problem().table().clone())
+        (last, map, engine.problem().table().clone(), means)
     };
     if last.contact.plastic.is_none() {
         return Err(Failure::arguments(
@@ -45,9 +46,11 @@ pub(super) fn unload(path: &Bound<'_, LoadingPath>) -> Fallible<Unloading> {
     let touch = -map.max_height();
     let Setting { grid, boundary, .. } = this.setting;
     let states = if load > 0.0 {
-        let solver =
-            detached(py, || LoadingSolver::builder(&map, &kernel).max_load(load).build())??;
-        let unloading = LoadingPath::new(super::Inner::live(solver.into_path(), &[]), this.e_star);
+        let solver = detached(py, || {
+            means.give(LoadingSolver::builder(&map, &kernel)).max_load(load).build()
+        })??;
+        let inner = super::Inner::live(solver.into_path(), &[], means);
+        let unloading = LoadingPath::new(inner, this.e_star);
         unloading.run(py, None, false)?;
         let states = unloading.history_now(py).history;
         Arc::new(States::clone(&states).up_to_load(load))

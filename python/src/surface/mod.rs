@@ -273,7 +273,7 @@ impl Surface {
         statistics::trend(py, self.topography()?, choice::trend(trend)?)
     }
 
-    /// A piece of the surface.
+    /// A piece of the surface. Nothing is said of whether it repeats, unless it is the whole.
     ///
     /// Parameters
     /// ----------
@@ -290,7 +290,9 @@ impl Surface {
             None => 0..all,
         };
         let (columns, rows) = (of(columns, self.grid.nx()), of(rows, self.grid.ny()));
-        self.made(py, |surface| surface.crop(columns, rows))
+        let is_whole = (rows.len(), columns.len()) == self.shape();
+        let piece = self.made(py, |surface| surface.crop(columns, rows))?;
+        Ok(Self { periodic: self.periodic.filter(|_| is_whole), ..piece })
     }
 
     /// The same surface on another number of nodes.
@@ -420,14 +422,15 @@ impl Surface {
         self.made(py, |surface| Ok(surface.invert()))
     }
 
-    /// The composite roughness of two surfaces on the same grid.
+    /// The composite roughness of two surfaces on the same grid. It repeats if both do.
     fn __add__(&self, py: Python<'_>, other: PyRef<'_, Self>) -> Fallible<Self> {
         if other.grid != self.grid {
             return Err(Failure::arguments("surfaces on different grids cannot be added"));
         }
         let second = other.topography()?;
         let sum = |first: &Topography| Topography::sample(&first.plus(second), *first.grid());
-        self.made(py, sum)
+        let both = self.periodic.zip(other.periodic);
+        Ok(Self { periodic: both.map(|(one, other)| one && other), ..self.made(py, sum)? })
     }
 
     /// What looks wrong with the surface, in words: slopes that are too steep, a tilt, a grid that does not resolve it.
