@@ -147,6 +147,14 @@ def test_what_is_refused(surface: asp.Surface, tmp_path: Path) -> None:
         with pytest.raises(errors.AsperityError, match="with adhesion"):
             follow(path)  # type: ignore[operator]
     path.save(tmp_path / "r.npz")
+    for words, arguments in [
+        ("takes a factor", {"updater": "iterative"}),
+        ("knows its half-space", {"half_space": SOFT}),
+        ("MB of memory|kB of memory", {"memory_budget": 10_000}),
+    ]:
+        with pytest.raises(errors.AsperityError, match=words):
+            asp.open(tmp_path / "r.npz", **arguments)  # type: ignore[arg-type]
+    assert asp.open(tmp_path / "r.npz", memory_budget=10**9).states == path.states
     with pytest.raises(errors.AsperityError):
         asp.open(tmp_path / "missing.npz")
 

@@ -109,6 +109,14 @@ fn record() -> Result<(), Error> {
     for state in states.states().iter().step_by(states.states().len() / 5) {
         assert_eq!(again.fields_at(state)?, path.fields_at(state)?);
     }
+    // On a kernel that is given, if it is that one, and within a budget.
+    let on = |e_star: f64, budget: Option<usize>| {
+        record.path_on(&Boussinesq::new(record.grid(), e_star)?, budget)
+    };
+    let given = on(E_STAR, Some(1 << 30))?;
+    assert_eq!(given.state(), path.state());
+    assert!(matches!(on(2.0 * E_STAR, None), Err(Error::WrongKernel { .. })));
+    assert!(matches!(on(E_STAR, Some(1000)), Err(Error::MemoryBudget { budget: 1000, .. })));
     Ok(())
 }
 

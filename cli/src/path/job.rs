@@ -283,7 +283,9 @@ impl Job {
     /// The path with adhesion, at its beginning or where it was interrupted.
     pub(super) fn adhesive_path(&self) -> Result<AdhesivePath, Failure> {
         if let Some(record) = &self.begun_with_adhesion {
-            return record.path().map_err(|error| Failure::new("cannot resume", error));
+            let kernel = record.make_kernel();
+            let path = kernel.and_then(|kernel| record.path_on(&kernel, self.memory_budget));
+            return path.map_err(|error| Failure::new("cannot resume", error));
         }
         let kernel = self.kernel()?;
         let Some(law) = self.law else {

@@ -22,6 +22,9 @@ const RULES: [(&str, ContactRule); 2] = [
     ("approximate-order", ContactRule::ApproximateOrder),
 ];
 
+const ADHESION_BY_ITERATIONS: &str =
+    "a path with adhesion takes a factor: updater=\"auto\" or \"cholesky\"";
+
 /// Set up the loading path of a rough surface on an elastic half-space.
 ///
 /// Parameters
@@ -108,10 +111,7 @@ fn load_path<'py>(
                 nodes.is_some(),
                 "a path with adhesion ends at an area_fraction, and not at a number of nodes",
             ),
-            (
-                matches!(updater, Updater::Iterative),
-                "a path with adhesion takes a factor: updater=\"auto\" or \"cholesky\"",
-            ),
+            (matches!(updater, Updater::Iterative), ADHESION_BY_ITERATIONS),
             (
                 rule != ContactRule::FirstContact,
                 "a path with adhesion follows events in their exact order: rule=\"first-contact\"",
@@ -179,33 +179,39 @@ fn open<'py>(
     let updater = choose("updater", updater, &Updater::WORDS)?;
     let record = match detached(py, || LoadingRecord::read_npz(&path))? {
         Err(Error::Adhesion(AdhesionError::Record { .. })) => {
-            let read = || {
-                let record = AdhesiveRecord::read_npz(&path)?;
-                Ok::<_, Error>((record.path()?, record))
-            };
-            let (path, record) = detached(py, read)??;
-            let body = HalfSpace::of_origin(&record.kernel().origin);
-            let e_star = body.and_then(|body| body.modulus());
+            if matches!(updater, Updater::Iterative) {
+                return Err(Failure::arguments(ADHESION_BY_ITERATIONS));
+            }
+            let record = detached(py, || AdhesiveRecord::read_npz(&path))??;
+            let found = HalfSpace::of_origin(&record.kernel().origin);
+            let body = body_of(half_space.as_deref(), found.as_ref())?;
+            let (kernel, e_star) = (body.kernel(py, record.grid())?, body.modulus());
+            let path = detached(py, || record.path_on(&*kernel, memory_budget))??;
             let path = AdhesivePath::new(path, record.states().clone(), e_star);
             return Ok(path.into_pyobject(py)?.into_any());
         }
         record => record?,
     };
     let found = HalfSpace::of_origin(&record.kernel().origin);
-    let body = match (&half_space, &found) {
-        (Some(given), None) => &**given,
-        (None, Some(found)) => found,
-        (Some(_), Some(_)) => {
-            return Err(Failure::arguments(
-                "the record knows its half-space: half_space is for a body of your own",
-            ));
-        }
-        (None, None) => return Err(asperity::Error::ForeignKernel.into()),
-    };
+    let body = body_of(half_space.as_deref(), found.as_ref())?;
     let (kernel, e_star) = (body.kernel(py, record.grid())?, body.modulus());
     let means = Means { updater, memory_budget };
     let inner = detached(py, || Inner::of_record(record, kernel, means))??;
     Ok(LoadingPath::new(inner, e_star).into_pyobject(py)?.into_any())
+}
+
+/// The body of a record: the one given, if the record does not know it.
+fn body_of<'a>(
+    given: Option<&'a HalfSpace>,
+    found: Option<&'a HalfSpace>,
+) -> Fallible<&'a HalfSpace> {
+    match (given, found) {
+        (Some(body), None) | (None, Some(body)) => Ok(body),
+        (Some(_), Some(_)) => Err(Failure::arguments(
+            "the record knows its half-space: half_space is for a body of your own",
+        )),
+        (None, None) => Err(Error::ForeignKernel.into()),
+    }
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -6,9 +6,11 @@ mod npz;
 use nalgebra::DMatrix;
 
 use super::KernelRecord;
-use crate::adhesion::{Adhesion, AdhesiveBranch, AdhesivePath, AdhesiveState, Trace};
+use crate::adhesion::{
+    Adhesion, AdhesiveBranch, AdhesiveBuilder, AdhesivePath, AdhesiveState, Trace,
+};
 use crate::surface::HeightMap;
-use crate::{Error, Grid};
+use crate::{Error, Grid, InfluenceKernel, KernelTable};
 
 /// How far numbers that follow from others may be from them, relative to the greatest of these.
 const SAME: f64 = 1e-9;
@@ -125,12 +127,36 @@ impl AdhesiveRecord {
     ///
     /// # Errors
     ///
-    /// Those of [`LoadingRecord::make_kernel`](super::LoadingRecord::make_kernel) and of
-    /// [`AdhesiveBuilder::build`](crate::adhesion::AdhesiveBuilder::build); [`Error::Inconsistent`] if the nodes do not
-    /// carry the load of the last state.
+    /// Those of [`Self::make_kernel`] and of [`AdhesiveBuilder::build`](crate::adhesion::AdhesiveBuilder::build);
+    /// [`Error::Inconsistent`] if the nodes do not carry the load of the last state.
     pub fn path(&self) -> Result<AdhesivePath, Error> {
-        let kernel = self.kernel.make(self.grid)?;
-        let mut path = AdhesivePath::builder(&self.heights, &kernel, self.adhesion).build()?;
+        self.path_on(&self.make_kernel()?, None)
+    }
+
+    /// The kernel, made again.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`LoadingRecord::make_kernel`](super::LoadingRecord::make_kernel).
+    pub fn make_kernel(&self) -> Result<KernelTable, Error> {
+        self.kernel.make(self.grid)
+    }
+
+    /// The same on the kernel given, which must be the one of the record, for kernels that are not of this crate; and
+    /// within a [memory budget](crate::adhesion::AdhesiveBuilder::memory_budget) other than that by default.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::WrongKernel`] if it is another one, and as above.
+    pub fn path_on(
+        &self,
+        kernel: &dyn InfluenceKernel,
+        memory_budget: Option<usize>,
+    ) -> Result<AdhesivePath, Error> {
+        let builder = AdhesivePath::builder(&self.heights, kernel, self.adhesion);
+        let builder = memory_budget.into_iter().fold(builder, AdhesiveBuilder::memory_budget);
+        let mut path = builder.build()?;
+        self.kernel.check(path.problem().table())?;
         if let Some(last) = self.states.states().last() {
             path.restore(self.trace.clone(), *last)?;
         }
