@@ -50,9 +50,10 @@ fn of_material(material: &Material) -> Value {
 /// The greatest stresses of a survey, null without a depth.
 fn put_greatest(value: &mut Value, survey: &Survey) {
     for measure in Measure::ALL {
-        let is_there = !survey.depths.is_empty();
-        value[measure.name()] =
-            is_there.then(|| place(survey.greatest(measure))).unwrap_or_default();
+        value[measure.name()] = match survey.depths[..] {
+            [] => Value::Null,
+            _ => place(survey.greatest(measure)),
+        };
     }
 }
 
