@@ -301,7 +301,8 @@ fn numbers(solution: &FixedLoadSolution, row: &Row, grid: &Grid) -> Vec<(&'stati
         exact(state.plastic.map_or(0.0, |plastic| plastic.volume)),
     ];
     let conducted = row.conductances.iter();
-    let conducted = conducted.map(|(carrier, value)| (carrier.column(), exact(*value)));
+    let some = |value: f64| optional(Some(value).filter(|value| !value.is_nan()));
+    let conducted = conducted.map(|(carrier, value)| (carrier.column(), some(*value)));
     COLUMNS.into_iter().zip(of_columns).chain(conducted).collect()
 }
 

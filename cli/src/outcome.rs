@@ -129,6 +129,30 @@ pub fn check_place(name: &Path) -> Result<(), Failure> {
     std::fs::File::create(&probe).and_then(|_| std::fs::remove_file(&probe)).map_err(failed)
 }
 
+/// Whether two names are of one file that is there.
+#[must_use]
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => false,
+    }
+}
+
+/// `Ok` if a file that is read is none of those that are written into a directory.
+///
+/// # Errors
+///
+/// If it would be replaced.
+pub fn check_input(input: &Path, directory: &Path, names: &[&str]) -> Result<(), Failure> {
+    match names.iter().map(|name| directory.join(name)).find(|file| is_same(file, input)) {
+        None => Ok(()),
+        Some(_) => Err(Failure::request(format!(
+            "{} would be replaced by a file of that name: give another --out",
+            input.display()
+        ))),
+    }
+}
+
 /// Collects failures and the names of the files that were written.
 #[derive(Default)]
 pub struct Outcome {

@@ -21,7 +21,7 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
         "nothing pulls here; `asperity path` takes --work-of-adhesion",
     ),
     (
-        &["viscoel", "creep", "relax", "rate", "frequency"],
+        &["viscoel", "creep", "relax", "-rate", "frequency"],
         "time plays no part: only the modulus at the rate of loading can be given, by --e-star or --material",
     ),
     (&["temperature", "thermal", "heat"], "temperature plays no part"),
@@ -39,6 +39,12 @@ pub(crate) fn left_out(error: &clap::Error) -> Option<String> {
     let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else {
         return None;
     };
+    // `Usage: asperity path ...`: other commands know of what these leave out, and the program alone is `path`.
+    let usage = error.get(ContextKind::Usage)?.to_string();
+    let command = usage.split_whitespace().nth(2).unwrap_or_default();
+    if !(["path", "load"].contains(&command) || command.starts_with(['[', '<', '-'])) {
+        return None;
+    }
     let asks = |names: &[&str]| names.iter().any(|name| option.contains(name));
     let is_unknown = error.kind() == ErrorKind::UnknownArgument;
     let (_, sentence) = LEFT_OUT.iter().find(|(names, _)| is_unknown && asks(names))?;
@@ -76,7 +82,14 @@ mod tests {
             assert!(said.contains(word) && said.contains(option), "{said}");
             assert!(said.contains("linear elastic"), "{said}");
         }
-        // Another mistake, and none.
+        // Another command, another mistake, and none.
+        #[derive(Debug, Parser)]
+        struct Slip {
+            #[arg(long)]
+            _friction: Option<f64>,
+        }
+        let error = Slip::try_parse_from(["asperity slip", "--frictions", "0.3"]).err();
+        assert!(error.is_some_and(|error| left_out(&error).is_none()));
         assert_eq!((said("--node"), said("--nonsense")), (None, None));
     }
 }

@@ -165,6 +165,52 @@ fn records_go_on() -> Done {
     Ok(())
 }
 
+/// A record that has passed some of the states that are asked for goes on to the others; one that has no state there
+/// says so, and so does one that is beyond where the path is to end.
+#[test]
+fn records_know_the_states_that_they_have_passed() -> Done {
+    let folder = Scratch::new("adhesion_resumed_at")?;
+    let on = format!("{SOFT} {STICKS} --mean-pressure 50 --at 20 --record r.npz");
+    run(&folder.0, &on)?;
+    let further = "path --resume r.npz --record s.npz --mean-pressure 100 --at 20,70 --out again";
+    let further = answer(&folder.0, further)?;
+    let pressures = further["at"].as_array().ok_or("no states")?.iter();
+    let pressures: Vec<f64> = pressures.map(|state| number(state, "mean_pressure")).collect();
+    assert_eq!(pressures.len(), 2, "{further}");
+    for (found, asked) in pressures.iter().zip([20.0, 70.0]) {
+        assert!((found / asked - 1.0).abs() < 1e-12, "{pressures:?}");
+    }
+    for (options, words) in [
+        ("--mean-pressure 100 --at 30", &["the record has passed", "30", "no state there"][..]),
+        ("--mean-pressure 70 --unload", &["the record is beyond", "state"]),
+        ("--mean-pressure 80", &["the record has passed", "80", "no state there"]),
+        ("--mean-pressure 200 --memory-budget 1e5", &["budget"]),
+    ] {
+        let line = format!("path --resume s.npz --record t.npz {options} --out refused");
+        is_refused(&output(&folder.0, &line)?, words);
+    }
+    assert!(!folder.join("refused/settings.json").exists());
+    // Where nobody says where the path ends, it ends with the record.
+    let at_20 = |object: &Value| (number(&object["at"][0], "mean_pressure") / 20.0 - 1.0).abs();
+    let read = answer(&folder.0, "path --resume s.npz --record t.npz --at 20 --out read")?;
+    assert!(at_20(&read) < 1e-12, "{read}");
+    assert!((number(&read, "mean_pressure") / 100.0 - 1.0).abs() < 1e-12, "{read}");
+    assert_eq!(read["ended_by"], "the end of loading in the record");
+    assert!(folder.join("read/contact_map_20Pa.png").is_file());
+    // One that was unloading has the states of before.
+    run(&folder.0, "path --resume s.npz --record u.npz --mean-pressure 100 --unload --out back")?;
+    let back = "path --resume u.npz --mean-pressure 100 --at 20 --unload --out again";
+    let back = answer(&folder.0, back)?;
+    assert!(at_20(&back) < 1e-12, "{back}");
+    assert_eq!(back["ended_by"], "the requested load");
+    let beyond = "path --resume u.npz --record t.npz --mean-pressure 70 --unload --out refused";
+    is_refused(&output(&folder.0, beyond)?, &["the record is beyond"]);
+    // Pressed on again it comes to a state once more.
+    let on = answer(&folder.0, "path --resume u.npz --mean-pressure 50 --at 30 --out on")?;
+    assert!((number(&on["at"][0], "mean_pressure") / 30.0 - 1.0).abs() < 1e-12, "{on}");
+    Ok(())
+}
+
 #[test]
 fn what_does_not_go_with_adhesion_is_refused() -> Done {
     let folder = Scratch::new("adhesion_refused")?;

@@ -186,6 +186,18 @@ fn refusals() -> Done {
         output(&folder.0, "creep path.npz --prony 1,1 --load 3.41e-7 --time 1e6 --out short")?;
     is_refused(&short, &["is enough until t = ", "--resume path.npz", "--max-load"]);
     assert!(folder.join("short/creep.csv").exists());
+    fs::copy(folder.join("path.npz"), folder.join("path(1).npz"))?;
+    let short = output(&folder.0, "creep path(1).npz --prony 1,1 --load 3.41e-7 --time 1e6")?;
+    is_refused(&short, &["--resume 'path(1).npz' --record 'path(1).npz'"]);
+    fs::write(folder.join("creep.csv"), "time,load\n0,0\n1,1e-7\n")?;
+    let own = output(&folder.0, &format!("creep path.npz {SERIES} --history creep.csv --out ."))?;
+    is_refused(&own, &["creep.csv would be replaced"]);
+    // Units are those that are asked for.
+    let line = format!("creep path.npz {SERIES} --load 3.41e-7 --time 3 --units mm-N-MPa");
+    let told = run(&folder.0, &line)?;
+    let units = told.lines().skip_while(|line| !line.contains("effective")).nth(1);
+    let units: Vec<&str> = units.ok_or("no table")?.split_whitespace().collect();
+    assert_eq!(units, ["s", "N", "N", "%", "mm", "mm"], "{told}");
     let beyond = output(&folder.0, &format!("creep path.npz {SERIES} --approach 1"))?;
     is_refused(&beyond, &["from its beginning on", "--max-approach"]);
     let shares = output(&folder.0, "creep path.npz --prony 1,0.6 2,0.6 --load 1e-7")?;

@@ -38,6 +38,7 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
         ),
         ("--max-area-fraction 0.1 --rule approximate-order", &["rule"]),
         ("--max-area-fraction 0.1 --updater iterative", &["updater"]),
+        ("--max-area-fraction 0.1 --hardness 1e9 --unload", &["unload is true", "false"]),
         ("--max-area-fraction 0.1 --nodes 16", &["grid.nodes", "[16,16]", "[32,32]"]),
     ] {
         let nodes = if other.contains("--nodes") { "" } else { "--nodes 32" };
@@ -114,6 +115,28 @@ fn many_paths_are_told_in_one_table() -> Done {
     // Area and its spread in per cent.
     assert!((shown[1] / (100.0 * last[1]) - 1.0).abs() < 1e-3, "{gathered}");
     assert!((shown[2] / (100.0 * last[2] / last[1]) - 1.0).abs() < 1e-3, "{gathered}");
+    Ok(())
+}
+
+/// Lines for programs name their seeds; what is the same of all is said once.
+#[test]
+fn lines_of_many_paths_name_their_seeds() -> Done {
+    let folder = Scratch::new("ensemble-lines")?;
+    for (k, options) in
+        ["--max-area-fraction 0.1", "--work-of-adhesion 0.05 --max-load 10"].into_iter().enumerate()
+    {
+        let line = format!("path --nodes 16 {options} --json --out runs_{k}");
+        let done = output(&folder.0, &format!("{line} --seeds 4..6"))?;
+        assert!(done.status.success(), "{}", said(&done));
+        let lines = String::from_utf8(done.stdout.clone())?;
+        let objects = lines.lines().map(serde_json::from_str::<serde_json::Value>);
+        let objects = objects.collect::<Result<Vec<_>, _>>()?;
+        let seeds: Vec<_> = objects.iter().map(|object| object["seed"].as_u64()).collect();
+        assert_eq!(seeds, [Some(4), Some(5), Some(6)]);
+        assert_eq!(said(&done).matches("waves shorter than").count(), 1, "{}", said(&done));
+        let alone = output(&folder.0, &format!("{line}_alone --seed 4"))?;
+        assert!(!String::from_utf8(alone.stdout)?.contains("\"seed\""));
+    }
     Ok(())
 }
 

@@ -221,3 +221,22 @@ fn unloading_begins_at_the_last_state() -> Done {
     }
     Ok(())
 }
+
+/// A path of one node goes back without a load; the surface that is left is not replaced by the next one.
+#[test]
+fn the_surface_that_is_left_is_kept() -> Done {
+    let folder = Scratch::new("hardness_left")?;
+    let yields = "--hardness 1GPa --unload";
+    finished(&folder.0, &format!("path --nodes 16 {yields} --max-area-fraction 0.004 --out one"))?;
+    assert_eq!(numbers(&folder.join("one/unloading.csv"), "load")?, [0.0]);
+    for updater in ["iterative", "cholesky"] {
+        finished(&folder.0, &format!("path --nodes 16 {yields} --updater {updater}"))?;
+    }
+    let left = fs::read(folder.join("out/residual_surface.npy"))?;
+    let again = format!("--surface out/residual_surface.npy --side 1e-2 --material steel {yields}");
+    let done = output(&folder.0, &format!("path {again}"))?;
+    is_refused(&done, &["out/residual_surface.npy would be replaced", "--out"]);
+    assert!(fs::read(folder.join("out/residual_surface.npy"))? == left);
+    finished(&folder.0, &format!("path {again} --out again"))?;
+    Ok(())
+}

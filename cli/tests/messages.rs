@@ -82,6 +82,28 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// What a path leaves out is said of paths and single loads; other commands know their own options.
+#[test]
+fn what_the_model_leaves_out_is_said_of_paths() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("left_out")?;
+    for (line, expected, is_left_out) in [
+        ("path --nodes 16 --frictions 0.3", "frictionless", true),
+        ("load --viscoelastic 0.3", "time plays no part", true),
+        ("path --strain-rate 0.3", "time plays no part", true),
+        ("--temperature 300", "temperature plays no part", true),
+        ("slip r.npz --frictions 0.3", "'--friction'", false),
+        ("leak r.npz --viscositys 1e-3", "'--viscosity'", false),
+        ("path --generated", "unexpected argument '--generated'", false),
+    ] {
+        let done = output(&folder.0, line)?;
+        let told = said(&done);
+        assert_eq!(done.status.code(), Some(2), "{line}: {told}");
+        assert!(told.contains(expected), "{line}: {told}");
+        assert_eq!(told.contains("The model is linear elastic"), is_left_out, "{line}: {told}");
+    }
+    Ok(())
+}
+
 /// A negative number is a value, with a unit as well as without.
 #[test]
 fn negative_values_are_values() -> Result<(), Box<dyn Error>> {

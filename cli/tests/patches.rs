@@ -5,9 +5,9 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-/// A folder of this test alone.
-fn folder() -> Result<PathBuf, Box<dyn Error>> {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("patches");
+/// A folder of one test alone.
+fn folder(name: &str) -> Result<PathBuf, Box<dyn Error>> {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     if folder.exists() {
         fs::remove_dir_all(&folder)?;
     }
@@ -24,7 +24,7 @@ fn asperity(folder: &PathBuf, arguments: &[&str]) -> std::io::Result<Output> {
 /// corrected, and at first touch there is one of one node.
 #[test]
 fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
-    let folder = folder()?;
+    let folder = folder("patches")?;
     let made = asperity(
         &folder,
         &[
@@ -74,5 +74,24 @@ fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
 
     let beyond = asperity(&folder, &["patches", "path.npz", "--at-area-fraction", "0.001"])?;
     assert!(!beyond.status.success());
+    Ok(())
+}
+
+/// A path that has only touched has an answer for programs too. What is advised names the record as a shell reads it.
+#[test]
+fn a_path_without_load_is_told() -> Result<(), Box<dyn Error>> {
+    let folder = folder("patches_touch")?;
+    let name = "it's one.npz";
+    let path = ["path", "--nodes", "16", "--max-area-fraction", "0.004", "--record", name];
+    assert!(asperity(&folder, &path)?.status.success());
+    let done = asperity(&folder, &["patches", name, "--json"])?;
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let object: serde_json::Value = serde_json::from_slice(&done.stdout)?;
+    assert_eq!((&object["states"], &object["patches"]), (&1.into(), &1.into()), "{object}");
+    assert_eq!(object["state"]["load"], 0.0);
+    assert!(object["seals_x"].is_null() && object["channel_x"].is_object(), "{object}");
+    let said = String::from_utf8(asperity(&folder, &["patches", name])?.stdout)?;
+    assert!(said.contains("no node has touched under load"), "{said}");
+    assert!(said.contains(r"--resume 'it'\''s one.npz' --record 'it'\''s one.npz'"), "{said}");
     Ok(())
 }

@@ -229,9 +229,14 @@ fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<
     let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
     let mut process =
         asperity(folder, &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
+    let begins = |folder: &Path| {
+        fs::metadata(folder.join("path.csv.part")).is_ok_and(|file| file.len() > 10_000)
+    };
+    // Of many paths, each has a folder of its own.
+    let out = folder.join("out");
     let begun = || {
-        let part = folder.join("out/path.csv.part");
-        fs::metadata(part).is_ok_and(|file| file.len() > 10_000)
+        let mut folders = fs::read_dir(&out).into_iter().flatten().flatten();
+        begins(&out) || folders.any(|entry| begins(&entry.path()))
     };
     while !begun() {
         assert!(process.try_wait()?.is_none(), "it has ended too early");
@@ -250,10 +255,11 @@ fn files_of_an_earlier_path_are_named() -> Done {
     let folder = Scratch::new("records-earlier")?;
     let told = printed(&folder.0, "path --nodes 32 --fields npy --at 1MPa")?;
     assert!(!told.contains("earlier"), "{told}");
+    fs::write(folder.join("out/interrupted.npz"), "")?;
     let done = output(&folder.0, "path --nodes 32 --at 2MPa")?;
     let told = said(&done);
-    let left = "note: of an earlier path: out/contact_map_1MPa.png, out/gap.npy, out/gap_1MPa.npy, out/pressure.npy, \
-                out/pressure_1MPa.npy";
+    let left = "note: of an earlier path: out/contact_map_1MPa.png, out/gap.npy, out/gap_1MPa.npy, out/interrupted.npz, \
+                out/pressure.npy, out/pressure_1MPa.npy";
     assert!(done.status.success() && told.contains(left), "{told}");
     Ok(())
 }
@@ -284,7 +290,7 @@ fn interrupted_paths_go_on() -> Done {
     }
     // All options come again, and do what they would have done.
     let options = "--max-load 1e6 --fields npy --save-every 200 --conductivity 50,40 --gap-conductivity 0.026 \
-                   --fe-table csv --friction 0.2 --unload --hardness 2e10 --record with.npz --memory-budget 1e9";
+                   --fe-table csv --friction 0.2 --unload --hardness 2e10 --record with.npz --memory-budget 1e9 --units mm-N-MPa --charts png";
     let given = "--nodes 128 --seed 1 --material steel --against glass --max-area-fraction 0.3";
     let done = signalled(&folder.0, &format!("path {given} {options}"), &["-INT"])?;
     let told = said(&done);
@@ -311,6 +317,18 @@ fn interrupted_paths_go_on() -> Done {
     let done = signalled(&folder.0, &format!("{LONG} --record term.npz"), &["-TERM"])?;
     assert_eq!(done.status.code(), Some(130), "{}", said(&done));
     assert!(folder.join("term.npz").is_file());
+    // Of many paths the one that is interrupted leaves nothing, and nothing is said of it.
+    let soft =
+        "path --nodes 64 --side 100um --rolloff 50um --short-cutoff 25um --sq 2um --e-star 1MPa";
+    let sticks = "--work-of-adhesion 50mJ/m² --max-area-fraction 0.5";
+    for line in [LONG.to_string(), format!("{soft} {sticks}")] {
+        fs::remove_dir_all(folder.join("out"))?;
+        let done = signalled(&folder.0, &format!("{line} --seeds 1..2"), &["-INT"])?;
+        let told = said(&done) + &String::from_utf8_lossy(&done.stdout);
+        assert_eq!(done.status.code(), Some(130), "{told}");
+        assert!(told.contains("interrupted at seed 1") && !told.contains("unfinished"), "{told}");
+        assert_eq!(fs::read_dir(folder.join("out"))?.count(), 0);
+    }
     Ok(())
 }
 
@@ -361,7 +379,7 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
         ("path --nodes 32 --save-every 10", "--record"),
         ("path --friction 0.3", "--fe-table"),
         ("load --friction 0.3", "frictionless"),
-        ("info --hardness 1e9", "nothing yields"),
+        ("info --hardness 1e9", "unexpected argument '--hardness'"),
     ] {
         let done = output(&folder.0, line)?;
         assert_eq!(done.status.code(), Some(2), "{line}");

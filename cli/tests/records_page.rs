@@ -107,6 +107,8 @@ fn the_page_is_that_of_the_files() -> Done {
     }
     // With adhesion the table has columns, and words, of its own.
     run(&folder.0, "path --nodes 16 --work-of-adhesion 0.05 --unload")?;
+    let told = fs::read_to_string(folder.join("out/settings.json"))?;
+    settings.extend(keys(&serde_json::from_str(&told)?, &[]));
     let table = fs::read_to_string(folder.join("out/path.csv"))?;
     columns.extend(table.lines().next().ok_or("no header")?.split(',').map(str::to_string));
     assert_eq!(tabulated(of_record, "array"), arrays);

@@ -160,3 +160,25 @@ fn what_cannot_be_sheared_is_refused() -> Done {
         &["yields", "elastic contact that grows"],
     )
 }
+
+/// A history is not replaced by the table of what it does.
+#[test]
+fn a_history_stays() -> Done {
+    let folder = Scratch::new("slip_history")?;
+    let record = run(&folder.0, "path --nodes 16 --material rubber --record path.npz")?;
+    assert!(record.status.success(), "{}", said(&record));
+    let table = "load,tangential_load\n1e-3,0\n1e-3,1e-5\n";
+    for name in ["history.csv", "slip.csv"] {
+        fs::write(folder.join(name), table)?;
+        let line = format!("slip path.npz --friction 0.5 --history {name}");
+        for out in ["--out .", "--out . --json"] {
+            let done = run(&folder.0, &format!("{line} {out}"))?;
+            assert_eq!(done.status.code(), Some(1), "{}", said(&done));
+            assert!(said(&done).contains(&format!("{name} would be replaced")), "{}", said(&done));
+        }
+        let other = run(&folder.0, &line)?;
+        assert!(other.status.success(), "{}", said(&other));
+        assert_eq!(fs::read_to_string(folder.join(name))?, table);
+    }
+    Ok(())
+}

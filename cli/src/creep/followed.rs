@@ -15,6 +15,7 @@ use asperity_cli::units;
 use super::course::Task;
 use crate::passages::{self, Passage};
 use crate::path::fields::Fields;
+use crate::shell;
 
 /// A history that has been followed.
 pub(super) struct Followed<'a> {
@@ -151,7 +152,7 @@ impl<'a> Followed<'a> {
         let Some(until) = self.enough_until else {
             return Ok(());
         };
-        let file = record.display();
+        let file = shell::quoted(record.as_os_str());
         let further = match (&self.solution, &task.course) {
             (Solution::Creep(creep), _) => {
                 format!("--max-load {}", at_least(creep.effective_load(task.end), 5))

@@ -15,9 +15,11 @@ mod table;
 mod touch_times;
 mod words;
 
+use std::path::Path;
+
 use asperity::bed::Bed;
 use asperity::record::LoadingRecord;
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 
 use crate::path::fields;
@@ -36,6 +38,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let record = LoadingRecord::read_npz(&options.record)
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
     let failed = |error| Failure::new("cannot let this contact creep", error);
+    let directory = match (&options.out, options.json) {
+        (None, true) => None,
+        (out, _) => Some(out.as_deref().unwrap_or_else(|| Path::new("out"))),
+    };
+    if let (Some(history), Some(directory)) = (&options.history, directory) {
+        outcome::check_input(history, directory, &["creep.csv", "leak_over_time.csv"])?;
+    }
     let task = Task::new(options)?;
     let bed = Bed::of_record(&record).map_err(failed)?;
     let followed = Followed::new(&bed, &task)?;
@@ -53,24 +62,22 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     words::print(options, &task, &followed, &passages, sweep.as_ref());
     leaks.iter().for_each(Leaks::print);
-    let directory = match (&options.out, options.json) {
-        (Some(directory), _) => directory.clone(),
-        (None, false) => "out".into(),
-        (None, true) => return followed.whole(&task, &options.record),
+    let Some(directory) = directory else {
+        return followed.whole(&task, &options.record);
     };
     panel::register_font()?;
-    std::fs::create_dir_all(&directory)
+    std::fs::create_dir_all(directory)
         .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
     let has_corners = options.history.is_some();
     outcome.written(charts::draw(&followed, &passages, has_corners, &directory.join("creep.png")));
-    if let Some(drawn) = touch_times::draw(&record, &followed, &directory) {
+    if let Some(drawn) = touch_times::draw(&record, &followed, directory) {
         outcome.written(drawn);
     }
     if let Some(leaks) = &leaks {
-        outcome.written(leaks.write(&directory));
-        leaks.draw(&directory).into_iter().for_each(|drawn| outcome.written(drawn));
+        outcome.written(leaks.write(directory));
+        leaks.draw(directory).into_iter().for_each(|drawn| outcome.written(drawn));
     }
     if let Some(Ok(sweep)) = &sweep {
         outcome.written(sweep.write(&directory.join("cycles.csv")));
@@ -80,12 +87,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let found = followed.fields(&record, &bed, options.pieces);
         match found {
             Ok(found) => {
-                outcome.all_written(fields::write(
-                    &found,
-                    &record.grid(),
-                    format,
-                    (&directory, ""),
-                ));
+                outcome.all_written(fields::write(&found, &record.grid(), format, (directory, "")));
             }
             Err(failure) => outcome.note(Err(failure)),
         }

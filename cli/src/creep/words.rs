@@ -9,6 +9,7 @@ use super::Options;
 use super::course::Task;
 use super::cycles::Sweep;
 use super::followed::{Followed, Method};
+use crate::columns::{self, Column};
 use crate::passages::Passage;
 
 /// About as many lines as a table has.
@@ -106,21 +107,19 @@ fn method(followed: &Followed) {
 }
 
 fn table(states: &[CreepState]) {
-    say!("      time  effective       load      area  approach  mean gap");
-    say!("         s          N          N         %        µm        µm");
     let every = states.len().div_ceil(LINES).max(1);
     let last = states.len().saturating_sub(1);
-    for (_, state) in states.iter().enumerate().filter(|(k, _)| k % every == 0 || *k == last) {
-        say!(
-            "{:>10} {:>10} {:>10} {:>9} {:>9} {:>9}",
-            significant(state.time, 4),
-            significant(state.effective_load, 4),
-            significant(state.load, 4),
-            significant(100.0 * state.contact_area_fraction, 4),
-            significant(1e6 * state.approach, 4),
-            significant(1e6 * state.mean_gap, 4)
-        );
-    }
+    let rows = states.iter().enumerate().filter(|(k, _)| k % every == 0 || *k == last);
+    let rows: Vec<&CreepState> = rows.map(|(_, state)| state).collect();
+    let of = |quantity: fn(&CreepState) -> f64| rows.iter().map(move |state| quantity(state));
+    columns::print(&[
+        Column::scaled("time", ("s", 1.0), of(|state| state.time)),
+        Column::new("effective", "N", of(|state| state.effective_load)),
+        Column::new("load", "N", of(|state| state.load)),
+        Column::percent("area", of(|state| state.contact_area_fraction)),
+        Column::new("approach", "m", of(|state| state.approach)),
+        Column::new("mean gap", "m", of(|state| state.mean_gap)),
+    ]);
     say!();
     say!("effective: the elastic load of the same contact, as long as it grows");
     say!();

@@ -24,8 +24,9 @@ const ROWS: usize = 12;
 /// specimen
 ///
 /// Maps of one specimen are followed with the same options, each with an --out of its own in one folder. Prints a
-/// table, and writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png.
-/// Unfinished folders are ignored.
+/// table, and writes gather.csv (for each load the mean and the standard deviation of contact_area_fraction,
+/// corrected_contact_area, approach, mean_gap, contact_stiffness and interfacial_stiffness) and gather.png. Unfinished
+/// folders are ignored.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// The folder that holds one folder for each path

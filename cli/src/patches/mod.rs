@@ -103,18 +103,21 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
         Err(error) => say!("patches cannot be followed along this path: {error}\n"),
     }
+    let moment = Moment::new(&record, state, connectivity);
+    if let (true, Ok(moment)) = (options.json, &moment) {
+        let object = object::of(&record, followed.as_ref().ok(), moment);
+        answer!("{}", object.map_err(|error| Failure::new("cannot find the channels", error))?);
+    }
     if !carries {
+        if options.json {
+            outcome.note(moment.map(drop));
+        }
         say!("no node has touched under load: there is nothing to draw");
         return outcome.finish();
     }
     outcome.written(activation::draw(&record, &out.join("activation.png")));
-    match Moment::new(&record, state, connectivity) {
+    match moment {
         Ok(moment) => {
-            if options.json {
-                let object = object::of(&record, followed.as_ref().ok(), &moment);
-                let failed = |error| Failure::new("cannot find the channels", error);
-                answer!("{}", object.map_err(failed)?);
-            }
             words::print_moment(&moment);
             let channels = words::print_channels(&record, &moment);
             outcome.note(channels.map_err(|error| Failure::new("cannot find the channels", error)));

@@ -13,6 +13,7 @@ use asperity_cli::{say, speech};
 
 use crate::elasticity::Bodies;
 use crate::resolution::Resolution;
+use crate::shell;
 
 use super::followed::Followed;
 use super::moment::Moment;
@@ -65,7 +66,7 @@ pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Fol
     if is_missing && can_go_on && reached < 1.0 {
         // Random surfaces percolate and seal at some 40 to 55 % contact.
         let further = if reached < 0.5 { 0.6 } else { 1.0 };
-        let file = file.display();
+        let file = shell::quoted(file.as_os_str());
         say!(
             "the path ends at {:.2} % contact; to see more: asperity path --resume {file} --record {file} --max-area-fraction \
              {further}, and then this command again",

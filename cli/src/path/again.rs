@@ -22,11 +22,13 @@ pub(super) fn command(record: &Path, given: &ArgMatches) -> String {
         let is_record = ["resume", "record"].contains(&arg.get_id().as_str());
         is_record || known.iter().any(|other| other.get_id() == arg.get_id())
     };
+    let is_given = |id: &str| {
+        given.try_contains_id(id).is_ok_and(|is| is)
+            && given.value_source(id) == Some(ValueSource::CommandLine)
+    };
     for arg in command.get_arguments().filter(|arg| !is_known(arg)) {
         let id = arg.get_id().as_str();
-        let is_given = given.try_contains_id(id).is_ok_and(|is| is)
-            && given.value_source(id) == Some(ValueSource::CommandLine);
-        let (Some(name), true) = (arg.get_long(), is_given) else { continue };
+        let (Some(name), true) = (arg.get_long(), is_given(id)) else { continue };
         if !arg.get_action().takes_values() {
             words += &format!(" --{name}");
             continue;
@@ -36,6 +38,17 @@ pub(super) fn command(record: &Path, given: &ArgMatches) -> String {
             let values: Vec<String> = values.map(quoted).collect();
             words += &format!(" --{name} {}", values.join(&delimiter));
         }
+    }
+    // Options of all commands, which are not among those of this one.
+    for name in ["units", "charts"] {
+        if is_given(name) {
+            for value in given.get_raw(name).into_iter().flatten() {
+                words += &format!(" --{name} {}", quoted(value));
+            }
+        }
+    }
+    if is_given("quiet") {
+        words += " --quiet";
     }
     words
 }

@@ -3,13 +3,16 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use asperity_cli::outcome::is_same;
+
 /// How the names of files begin that a path may write beside its table, and may not another time.
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 12] = [
     "conductance.",
     "contact_map",
     "fields.",
     "gap",
     "interface.",
+    "interrupted.",
     "loading_curve.",
     "plastic_depth",
     "pressure",
@@ -22,15 +25,18 @@ const NAMES: [&str; 11] = [
 pub(super) struct Earlier(Vec<PathBuf>);
 
 impl Earlier {
-    /// What is there before a path begins; nothing in a folder without the settings of a path.
-    pub(super) fn of(folder: &Path) -> Self {
+    /// What is there before a path begins that goes on from a record, or from none; nothing in a folder without the
+    /// settings of a path.
+    pub(super) fn of(folder: &Path, resumed: Option<&Path>) -> Self {
         let is_of_path = |file: &PathBuf| {
             let name = file.file_name().and_then(|name| name.to_str());
             name.is_some_and(|name| NAMES.iter().any(|begin| name.starts_with(begin)))
         };
         let entries = fs::read_dir(folder).ok().filter(|_| folder.join("settings.json").is_file());
         let files = entries.into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
-        let mut files: Vec<PathBuf> = files.filter(is_of_path).collect();
+        let is_own = |file: &PathBuf| resumed.is_some_and(|record| is_same(record, file));
+        let mut files: Vec<PathBuf> =
+            files.filter(|file| is_of_path(file) && !is_own(file)).collect();
         files.sort();
         Self(files)
     }

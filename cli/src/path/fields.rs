@@ -21,6 +21,17 @@ pub(crate) enum Format {
     Vti,
 }
 
+impl Format {
+    /// The files of the last state.
+    pub(super) fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Npy => &["pressure.npy", "gap.npy", "plastic_depth.npy"],
+            Self::Gsf => &["pressure.gsf", "gap.gsf", "plastic_depth.gsf"],
+            Self::Vti => &["fields.vti"],
+        }
+    }
+}
+
 /// Pressure and gap, and with a hardness the plastic depth.
 pub(crate) type Fields = Vec<(&'static str, DMatrix<f64>)>;
 

@@ -10,6 +10,11 @@ use signal_hook::flag;
 /// What a shell says of a program that Ctrl-C has ended.
 pub(super) const EXIT_CODE: u8 = 128 + SIGINT as u8;
 
+/// The end of a path of many, whose folder is removed: the next time it begins anew.
+pub(super) fn of_one_of_many() -> Failure {
+    Failure::with_code("interrupted", EXIT_CODE)
+}
+
 /// Whether a signal ends the program at once. While a path is followed it does not: the first one asks the path to
 /// stop, and the second ends the program.
 #[derive(Clone)]

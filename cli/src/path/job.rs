@@ -32,7 +32,7 @@ use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::note;
 use asperity_cli::number::{counted, quantity};
-use asperity_cli::outcome::Failure;
+use asperity_cli::outcome::{Failure, is_same};
 
 /// Contact area over nominal area at which a path ends if nobody says where.
 const AREA_FRACTION: f64 = 0.1;
@@ -72,12 +72,6 @@ impl Job {
         }
         let bodies = options.bodies()?;
         let (surface, name, source) = match &options.surface {
-            Some(file) if options.record.as_ref().is_some_and(|kept| is_same(kept, file)) => {
-                return Err(Failure::request(format!(
-                    "--record would replace the surface {}: name another file",
-                    file.display()
-                )));
-            }
             Some(file) => read(file, options)?,
             None => generate(options)?,
         };
@@ -163,6 +157,7 @@ impl Job {
             rule: record.settings().rule,
             updater: options.updater,
             targets: &targets,
+            unload: options.unload,
         };
         Ok(Self {
             name: format!("{}, {}", file.display(), counted(record.states().len(), "state")),
@@ -208,6 +203,7 @@ impl Job {
             rule: ContactRule::FirstContact,
             updater: options.updater,
             targets: &targets,
+            unload: options.unload,
         };
         let states = counted(record.states().states().len(), "state");
         Ok(Self {
@@ -527,6 +523,7 @@ fn settings(
         rule: options.rule.into(),
         updater: options.updater,
         targets: &targets(options, grid),
+        unload: options.unload,
     }
     .settings(grid, source)
 }
@@ -546,12 +543,4 @@ fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {
 fn rms_gradient(surface: &Topography) -> Result<f64, Failure> {
     let gradient = surface.map().rms_gradient(surface.grid());
     gradient.map_err(|error| Failure::new("cannot compute the gradient of the surface", error))
-}
-
-/// Whether two names are of one file that is there.
-fn is_same(one: &Path, other: &Path) -> bool {
-    match (one.canonicalize(), other.canonicalize()) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => false,
-    }
 }

@@ -71,7 +71,7 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
         if options.dry_run {
             return estimate(options, "");
         }
-        let earlier = Earlier::of(&options.out);
+        let earlier = Earlier::of(&options.out, options.resume.as_deref());
         let outcome = follow_one(options, given, &interrupt, None)?;
         let left = earlier.told(outcome.files());
         outcome.finish()?;
@@ -161,9 +161,9 @@ fn follow_one(
     options: &Options,
     given: &ArgMatches,
     interrupt: &Interrupt,
-    summary: Option<&mut Summary>,
+    mut summary: Option<&mut Summary>,
 ) -> Result<Outcome, Failure> {
-    let is_first = summary.as_ref().is_none_or(|summary| summary.is_empty());
+    let is_first = summary.as_mut().is_none_or(|summary| summary.begin());
     let (job, conductions) = prepare(options, is_first)?;
     let begun = SystemTime::now();
     // What cannot be written is said before the work.
@@ -197,6 +197,10 @@ fn follow_one(
     let mut outcome = Outcome::default();
     outcome.written(Ok(settings));
     outcome.note(ended);
+    if is_interrupted && summary.is_some() {
+        outcome.finish_quietly()?;
+        return Err(interrupt::of_one_of_many());
+    }
     if is_interrupted {
         let place = options.out.join("interrupted.npz");
         let name = job.record().unwrap_or(&place);
@@ -244,7 +248,10 @@ fn follow_one(
     }
     let told = (&conductions[..], seconds);
     outcome.note(match (options.json, summary) {
-        (true, _) => object::print(&job, &mut solver, &states, told),
+        (true, summary) => {
+            let seed = summary.and(options.roughness.seed);
+            object::print(&job, &mut solver, &states, (&conductions, seconds, seed))
+        }
         (false, Some(summary)) => {
             let seed = options.roughness.seed.unwrap_or_default();
             summary.add((&job, seed), &mut solver, &states, &conductions)

@@ -11,12 +11,12 @@ use super::moments;
 use super::table::{all_warnings, corrected_areas, reason, verify};
 use crate::conduction::{Named, conductances};
 
-/// Prints the end of the path as one line, with the states that were asked for, and checks it as the table does.
+/// Prints the end of the path as one line, with the states that were asked for and the seed of one of many, and checks it as the table does.
 pub(super) fn print(
     job: &Job,
     solver: &mut Solver,
     states: &[LoadingState],
-    (conductions, seconds): (&[Named], f64),
+    (conductions, seconds, seed): (&[Named], f64, Option<u64>),
 ) -> Result<(), Failure> {
     let failed = |error| Failure::new("cannot compute the last state", error);
     let corrected = corrected_areas(job, states).map_err(failed)?;
@@ -34,6 +34,9 @@ pub(super) fn print(
         object
     };
     let mut object = scalars(states.last(), greatest, corrected.last().copied());
+    if let Some(seed) = seed {
+        object.insert("seed".to_string(), json!(seed));
+    }
     object.insert("states".to_string(), json!(states.len()));
     object.insert("ended_by".to_string(), json!(solver.end().map(reason)));
     object.insert("seconds".to_string(), json!(seconds));

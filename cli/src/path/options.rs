@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use asperity::{Boundary, ContactRule, ContactTarget, Error, Grid};
 use asperity_cli::half_space::{Periodic, boundary};
-use asperity_cli::outcome::Failure;
+use asperity_cli::outcome::{Failure, check_input, is_same};
 use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
 use super::joint::Joint;
 use super::roughness::Roughness;
 use super::shift::Shift;
+use super::unloading;
 use super::updater::{Updater, no_room};
 use crate::adhesion::Sticking;
 use crate::at::At;
@@ -154,7 +155,7 @@ pub(crate) struct Options {
 
     /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state,
     /// max_pressure, warnings, and in `at` the scalars of each state of --at (SI units; null where there is no number);
-    /// one line for each seed
+    /// one line for each seed, which it names
     #[arg(long, help_heading = "Records and files")]
     pub(super) json: bool,
 }
@@ -192,9 +193,28 @@ impl Ends {
 }
 
 impl Options {
-    /// `Ok` if the states that are asked for make sense together.
+    /// `Ok` if the states that are asked for make sense together, and no surface is replaced.
     pub(super) fn check(&self) -> Result<(), Failure> {
-        At::check(&self.at, self.ends.are_open())
+        At::check(&self.at, self.has_open_end())?;
+        let is_left = self.unload && self.sticking.law().is_none();
+        let left: &[&str] = if is_left { &unloading::SURFACES } else { &[] };
+        let fields = self.fields.map_or(&[][..], Format::files);
+        for file in [&self.surface, &self.against_surface].into_iter().flatten() {
+            if self.record.as_ref().is_some_and(|kept| is_same(kept, file)) {
+                return Err(Failure::request(format!(
+                    "--record would replace the surface {}: name another file",
+                    file.display()
+                )));
+            }
+            check_input(file, &self.out, left)?;
+            check_input(file, &self.out, fields)?;
+        }
+        Ok(())
+    }
+
+    /// Whether no option says where the path ends.
+    pub(super) fn has_open_end(&self) -> bool {
+        self.ends.are_open()
     }
 
     /// Those of one path of many.

@@ -44,6 +44,8 @@ pub(super) struct Parts<'a> {
     pub(super) rule: ContactRule,
     pub(super) updater: Updater,
     pub(super) targets: &'a [ContactTarget],
+    /// Whether it goes back from there.
+    pub(super) unload: bool,
 }
 
 impl Parts<'_> {
@@ -74,6 +76,7 @@ impl Parts<'_> {
                 json!(updater.map_or_else(String::new, |value| value.get_name().to_string())),
             ),
             ("targets", plain(serde_json::to_value(self.targets))?),
+            ("unload", json!(self.unload)),
         ];
         let settings = settings.map(|(name, value)| (name.to_string(), value));
         let adhesion = self.law.map(|law| ("adhesion".to_string(), law.settings()));

@@ -18,6 +18,7 @@ use crate::state_table::{self, Row};
 /// What is known of the paths that have been followed.
 #[derive(Default)]
 pub(super) struct Summary {
+    is_begun: bool,
     rows: Vec<Row>,
     seeds: Vec<u64>,
     grid: Option<Grid>,
@@ -28,9 +29,9 @@ pub(super) struct Summary {
 }
 
 impl Summary {
-    /// Whether no path has come to its end.
-    pub(super) fn is_empty(&self) -> bool {
-        self.rows.is_empty() && self.pulled.is_empty()
+    /// Begins the next path, and returns whether it is the first.
+    pub(super) fn begin(&mut self) -> bool {
+        !std::mem::replace(&mut self.is_begun, true)
     }
 
     /// Adds the last state of the path of a seed.

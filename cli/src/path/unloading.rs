@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::io::{write_npy, write_x3p};
-use asperity::loading::History;
+use asperity::loading::{History, LoadingBuilder};
 use asperity::{LoadingSolver, LoadingState};
 
 use super::Solver;
@@ -14,6 +14,9 @@ use super::loop_chart::{self, Branches};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::say;
+
+/// The surface that is left.
+pub(super) const SURFACES: [&str; 2] = ["residual_surface.npy", "residual_surface.x3p"];
 
 /// Writes and draws the states on unloading, from the last state of the path to the last touch, and writes the surface
 /// that is left; prints what the loop costs.
@@ -29,10 +32,17 @@ pub(super) fn write(
     };
     let surface = solver.residual_surface().map_err(failed)?;
     let kernel = job.kernel()?;
-    let builder = LoadingSolver::builder(&surface, &kernel).max_load(last.contact.load);
+    let load = last.contact.load;
+    let builder = LoadingSolver::builder(&surface, &kernel).updater(job.updater().make());
+    let builder = job.memory_budget().into_iter().fold(builder, LoadingBuilder::memory_budget);
+    // Without a load there is the first touch alone.
+    let (builder, count) = match load > 0.0 {
+        true => (builder.max_load(load), usize::MAX),
+        false => (builder, 1),
+    };
     let path = builder.build().map_err(failed)?;
-    let states = path.collect::<Result<History, _>>().map_err(failed)?;
-    let states = states.up_to_load(last.contact.load);
+    let states = path.take(count).collect::<Result<History, _>>().map_err(failed)?;
+    let states = states.up_to_load(load);
     // Approaches of the path count from the first touch of the first surface.
     let touch = -surface.max_height();
     let mut lines = "load,approach,mean_gap,contact_area,contact_area_fraction,contact_stiffness,\
@@ -69,7 +79,7 @@ pub(super) fn write(
             quantity(plastic.volume, "m³", 4)
         );
     }
-    let [npy, x3p] = ["npy", "x3p"].map(|end| directory.join(format!("residual_surface.{end}")));
+    let [npy, x3p] = SURFACES.map(|name| directory.join(name));
     let heights = surface.matrix();
     write_npy(&npy, heights).map_err(|error| Failure::writing(&npy, error))?;
     write_x3p(&x3p, &job.grid(), heights).map_err(|error| Failure::writing(&x3p, error))?;

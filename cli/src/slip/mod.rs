@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::bed::Bed;
 use asperity::record::LoadingRecord;
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
@@ -83,6 +83,9 @@ pub(crate) struct Options {
     out: Option<PathBuf>,
 }
 
+/// The tables that are written, the last of a history.
+const TABLES: [&str; 4] = ["slip.csv", "cycles.csv", "iwan.csv", "history.csv"];
+
 /// Reads the record, says what the tangential load does, and writes the files.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
@@ -94,19 +97,23 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let bed = Bed::of_record(&record)
         .map_err(|error| Failure::new(format!("cannot shear the path of {file}"), error))?;
     let joint = Joint::new(&bed, &record, options)?;
+    let directory = match (&options.out, options.json) {
+        (None, true) => None,
+        (out, _) => Some(out.as_deref().unwrap_or_else(|| Path::new("out"))),
+    };
+    if let (Some(history), Some(directory)) = (&options.history, directory) {
+        outcome::check_input(history, directory, &TABLES)?;
+    }
     let sheared =
         options.history.as_deref().map(|name| Sheared::follow(&joint, name)).transpose()?;
     if options.json {
         answer!("{}", words::object(&joint, sheared.as_ref()));
     }
     words::print(&joint, sheared.as_ref());
-    let directory = match (&options.out, options.json) {
-        (Some(directory), _) => directory.clone(),
-        (None, false) => PathBuf::from("out"),
-        (None, true) => return Ok(()),
-    };
-    let outcome = write(&joint, sheared.as_ref(), &directory)?;
-    outcome.finish()
+    match directory {
+        Some(directory) => write(&joint, sheared.as_ref(), directory)?.finish(),
+        None => Ok(()),
+    }
 }
 
 fn write(joint: &Joint, sheared: Option<&Sheared>, directory: &Path) -> Result<Outcome, Failure> {
@@ -115,12 +122,13 @@ fn write(joint: &Joint, sheared: Option<&Sheared>, directory: &Path) -> Result<O
         .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     let place = |name: &str| directory.join(name);
-    outcome.written(table::loading(joint, &place("slip.csv")));
-    outcome.written(table::cycles(joint, &place("cycles.csv")));
-    outcome.written(table::elements(joint, &place("iwan.csv")));
+    let [loading, cycles, elements, history] = TABLES;
+    outcome.written(table::loading(joint, &place(loading)));
+    outcome.written(table::cycles(joint, &place(cycles)));
+    outcome.written(table::elements(joint, &place(elements)));
     outcome.written(charts::draw(joint, &place("slip.png")));
     if let Some(sheared) = sheared {
-        outcome.written(table::history(sheared, &place("history.csv")));
+        outcome.written(table::history(sheared, &place(history)));
         outcome.written(charts::draw_history(sheared, &place("history.png")));
     }
     outcome.all_written(maps::draw(joint, directory));

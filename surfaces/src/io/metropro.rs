@@ -23,6 +23,8 @@ const WAVELENGTH: usize = 168;
 const OBLIQUITY: usize = 176;
 const PIXEL: usize = 184;
 const RESOLUTION: usize = 218;
+/// Not 0 where heights are stored with their signs changed.
+const SIGN: usize = 232;
 
 /// Integers from here on stand for missing heights.
 const MISSING: f64 = 2_147_483_640.0;
@@ -47,7 +49,9 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
             bail!(at(RESOLUTION), "the resolution of phases is {other}, but 0, 1 or 2 was expected")
         }
     };
-    let step = length(SCALE, "the scale of the interferometer")?
+    let sign = if field(SIGN)?.u16()? == 0 { 1.0 } else { -1.0 };
+    let step = sign
+        * length(SCALE, "the scale of the interferometer")?
         * length(WAVELENGTH, "the wavelength")?
         * length(OBLIQUITY, "the obliquity")?
         / parts;
@@ -60,4 +64,28 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let pixel = f64::from(field(PIXEL)?.f32()?);
     let cell = Some((pixel, pixel)).filter(|_| pixel != 0.0);
     Ok(vec![Channel::in_metres((nx, ny), values, cell)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two heights of 1 and 2 parts of a wavelength of 4096 m, as they are and with their signs changed.
+    #[test]
+    fn signs_are_those_of_the_header() {
+        for (sign, expected) in [(0_u8, [1.0, 2.0]), (1, [-1.0, -2.0])] {
+            let mut file = vec![0; 834];
+            file[..4].copy_from_slice(BEGINS[0]);
+            file[HEADER..HEADER + 4].copy_from_slice(&834_u32.to_be_bytes());
+            file[SHAPE..SHAPE + 8].copy_from_slice(&[0, 2, 0, 1, 0, 0, 0, 8]);
+            for (place, value) in [(SCALE, 1.0_f32), (WAVELENGTH, 4096.0), (OBLIQUITY, 1.0)] {
+                file[place..place + 4].copy_from_slice(&value.to_be_bytes());
+            }
+            file[SIGN + 1] = sign;
+            file.extend([1_i32, 2].map(i32::to_be_bytes).concat());
+            let parsed = parse(&file).ok().unwrap_or_default();
+            let values: Vec<f64> = parsed.into_iter().flat_map(|channel| channel.values).collect();
+            assert_eq!(values, expected);
+        }
+    }
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use asperity::adhesion::{AdhesiveBranch, AdhesiveEnd, AdhesivePath, AdhesiveState, Direction};
 use asperity::contact::ContactTarget;
 use asperity::record::AdhesiveRecord;
-use asperity_cli::number::{counted, scientific};
+use asperity_cli::number::{counted, quantity, scientific};
 use asperity_cli::outcome::Failure;
 use indicatif::ProgressBar;
 use nalgebra::DMatrix;
@@ -21,6 +21,9 @@ use crate::at::At;
 
 const HEADER: &str = "step,ix,iy,event,approach,load,contact_area,contact_area_fraction,mean_gap,contact_stiffness,\
                       interfacial_stiffness,branch,soft_nodes,cohesive_nodes,elastic_energy,adhesive_energy,dissipated,work";
+
+/// Why a path ends that goes on from a record without being pressed further.
+const OF_RECORD: &str = "the end of loading in the record";
 
 /// A path that has been followed.
 pub(super) struct Followed {
@@ -89,17 +92,25 @@ impl<'a> Course<'a> {
     ) -> Result<Self, Failure> {
         let record = job.record().map(Path::to_path_buf);
         let begun = job.begun_with_adhesion().map_or(&[][..], |begun| begun.states().states());
+        let (grid, branch) = (job.grid(), present_loading(begun, options.unload));
+        let ended_by = end_of(branch, job, options)?;
+        let (mut reached, mut missed) = (Vec::new(), Vec::new());
+        for at in job.at() {
+            let target = at.target(grid.nominal_area());
+            match super::reached(branch, (&target, &at.to_string()), &grid)? {
+                Some(state) => reached.push((*at, *state)),
+                None => missed.push(*at),
+            }
+        }
+        // A record that was unloading goes on with that.
+        let is_back = |state: &AdhesiveState| state.direction == Direction::Unloading;
+        let is_turned = options.unload && begun.last().is_some_and(is_back);
+        let ended_by = ended_by.or(is_turned.then_some(OF_RECORD));
         let mut lines = Lines::create(&options.out, HEADER)?;
         begun.iter().try_for_each(|state| lines.add(&line(state)))?;
         Ok(Self {
             job,
-            followed: Followed {
-                path,
-                states: begun.to_vec(),
-                reached: Vec::new(),
-                missed: job.at().to_vec(),
-                ended_by: None,
-            },
+            followed: Followed { path, states: begun.to_vec(), reached, missed, ended_by },
             lines,
             saves: record.zip(options.save_every.map(usize::from)),
             is_done: false,
@@ -120,15 +131,9 @@ impl<'a> Course<'a> {
     pub(super) fn follow(&mut self, interrupt: &Interrupt, unloads: bool) -> Result<(), Failure> {
         let bar = bar();
         interrupt.wait();
-        // A record that was unloading goes on with that.
-        let was_unloading = self
-            .followed
-            .states
-            .last()
-            .is_some_and(|state| state.direction == Direction::Unloading && unloads);
-        let done = match was_unloading {
-            true => Ok(()),
-            false => self.resume().and_then(|()| self.load(interrupt, &bar)),
+        let done = match self.followed.ended_by {
+            Some(_) => Ok(()),
+            None => self.resume().and_then(|()| self.load(interrupt, &bar)),
         };
         let done = done.and_then(|()| match unloads && !interrupt.is_asked() {
             true => self.unload(interrupt, &bar),
@@ -139,11 +144,9 @@ impl<'a> Course<'a> {
         done
     }
 
-    /// Lets a path that has begun go on to where it is to end, unless it is there.
+    /// Lets a path that has begun go on to where it is to end.
     fn resume(&mut self) -> Result<(), Failure> {
-        let Some(state) = self.followed.path.state() else { return Ok(()) };
-        let grid = self.job.grid();
-        if self.job.targets().iter().any(|target| is_there(target, &state.contact, &grid)) {
+        if self.followed.path.state().is_none() {
             return Ok(());
         }
         let turned = self.followed.path.load_to_first_of(&self.targets());
@@ -262,6 +265,63 @@ fn line(state: &AdhesiveState) -> String {
         state.dissipated,
         state.work,
     )
+}
+
+/// The last branch of loading of a record, which goes on unless it is unloaded from; empty if a record that was unloaded
+/// is pressed on again.
+fn present_loading(states: &[AdhesiveState], unloads: bool) -> &[AdhesiveState] {
+    let behind_last = |states: &[AdhesiveState], direction| {
+        states.iter().rposition(|state| state.direction == direction).map_or(0, |k| k + 1)
+    };
+    let end = if unloads { behind_last(states, Direction::Loading) } else { states.len() };
+    let states = &states[..end];
+    &states[behind_last(states, Direction::Unloading)..]
+}
+
+/// Why the loading of a record has ended, `None` if it goes on.
+///
+/// # Errors
+///
+/// A record that is beyond where the path is to end.
+fn end_of(
+    branch: &[AdhesiveState],
+    job: &Job,
+    options: &Options,
+) -> Result<Option<&'static str>, Failure> {
+    let Some(last) = branch.last() else { return Ok(None) };
+    let mut ended_by = None;
+    for target in job.targets() {
+        let name = named(target);
+        match super::reached(branch, (target, &name), &job.grid())? {
+            None => {}
+            Some(state) if state.step == last.step => ended_by = Some(in_words(target)),
+            // Nobody says where the path ends.
+            Some(_) if options.has_open_end() => ended_by = Some(OF_RECORD),
+            Some(state) => {
+                return Err(Failure::request(format!(
+                    "the record is beyond {name} already, where the path is to end: it came there with state {} of {}",
+                    state.step, last.step
+                )));
+            }
+        }
+    }
+    Ok(ended_by)
+}
+
+/// A target with its value.
+fn named(target: &ContactTarget) -> String {
+    match *target {
+        ContactTarget::Load(load) => format!("a load of {}", quantity(load, "N", 6)),
+        ContactTarget::Approach(approach) => {
+            format!("an approach of {}", quantity(approach, "m", 6))
+        }
+        ContactTarget::MeanGap(gap) => format!("a mean gap of {}", quantity(gap, "m", 6)),
+        ContactTarget::MeanPressure(pressure) => {
+            format!("a mean pressure of {}", quantity(pressure, "Pa", 6))
+        }
+        ContactTarget::AreaFraction(fraction) => format!("{:.4} % of contact", 100.0 * fraction),
+        _ => "a state".to_string(),
+    }
 }
 
 /// Why a path has ended.

@@ -11,7 +11,7 @@ mod words;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use asperity::adhesion::AdhesiveState;
+use asperity::adhesion::{AdhesiveEvent, AdhesiveState};
 use asperity::contact::ContactTarget;
 use asperity::{ContactState, Grid, Warning};
 use asperity_cli::outcome::{Failure, Outcome};
@@ -23,7 +23,7 @@ pub(super) use expected::expected;
 pub(super) use words::{Pulled, pull};
 
 use super::fields::{self, Fields};
-use super::interrupt::Interrupt;
+use super::interrupt::{self, Interrupt};
 use super::interrupted;
 use super::job::Job;
 use super::options::{Options, Rule};
@@ -79,6 +79,38 @@ fn is_there(target: &ContactTarget, contact: &ContactState, grid: &Grid) -> bool
     }
 }
 
+/// The state with which a branch of loading has come to a target, `None` before it.
+///
+/// # Errors
+///
+/// A branch that has passed the target without a state there.
+fn reached<'a>(
+    branch: &'a [AdhesiveState],
+    (target, name): (&ContactTarget, &str),
+    grid: &Grid,
+) -> Result<Option<&'a AdhesiveState>, Failure> {
+    let Some(state) = branch.iter().find(|state| is_there(target, &state.contact, grid)) else {
+        return Ok(None);
+    };
+    let contact = &state.contact;
+    // Limits are met exactly, and read back bit for bit.
+    let is_close = |found: f64, asked: f64| (found - asked).abs() <= 1e-12 * asked.abs();
+    let is_met = match *target {
+        ContactTarget::Load(load) => is_close(contact.load, load),
+        ContactTarget::Approach(approach) => is_close(contact.approach, approach),
+        ContactTarget::MeanGap(gap) => is_close(contact.mean_gap, gap),
+        ContactTarget::MeanPressure(pressure) => is_close(contact.mean_pressure(), pressure),
+        // One node after the other.
+        _ => true,
+    };
+    match is_met || state.event == AdhesiveEvent::JumpEnd {
+        true => Ok(Some(state)),
+        false => Err(Failure::request(format!(
+            "the record has passed {name} and has no state there: only a new path stops at it"
+        ))),
+    }
+}
+
 /// Does one job and writes its files.
 pub(super) fn follow(
     (options, given): (&Options, &ArgMatches),
@@ -90,9 +122,9 @@ pub(super) fn follow(
     let warnings = Warning::of_adhesion(job.surface(), &path.law(), job.e_star());
     let warnings: Vec<String> = warnings.iter().map(told).collect();
     panel::register_font()?;
-    let settings = job.settings().write(&options.out)?;
     let start = Instant::now();
     let mut course = Course::new(job, path, options)?;
+    let settings = job.settings().write(&options.out)?;
     let ended = course.follow(interrupt, options.unload);
     let is_interrupted = interrupt.wait_no_longer() && !course.is_done();
     let (followed, lines) = course.end();
@@ -104,6 +136,10 @@ pub(super) fn follow(
     outcome.written(Ok(settings));
     outcome.note(ended);
     outcome.written(lines.finish(is_whole));
+    if is_interrupted && summary.is_some() {
+        outcome.finish_quietly()?;
+        return Err(interrupt::of_one_of_many());
+    }
     if is_interrupted {
         let place = options.out.join("interrupted.npz");
         let name = job.record().unwrap_or(&place);
@@ -134,7 +170,10 @@ pub(super) fn follow(
         outcome.written(kept);
     }
     match (options.json, summary) {
-        (true, _) => object::print(job, &followed, &warnings, (greatest, seconds)),
+        (true, summary) => {
+            let seed = summary.and(options.roughness.seed);
+            object::print(job, &followed, &warnings, (greatest, seconds, seed));
+        }
         (false, Some(summary)) => {
             let seed = options.roughness.seed.unwrap_or_default();
             summary.add_pulled((job, seed), Pulled::of(&followed), &warnings);

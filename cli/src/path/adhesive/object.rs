@@ -8,12 +8,12 @@ use super::super::job::Job;
 use super::course::Followed;
 use super::words::{Pulled, pull};
 
-/// Prints the end of loading as one line, with what pulls and what the loop costs.
+/// Prints the end of loading as one line, with what pulls and what the loop costs, and the seed of one of many.
 pub(super) fn print(
     job: &Job,
     followed: &Followed,
     warnings: &[String],
-    (max_pressure, seconds): (f64, f64),
+    (max_pressure, seconds, seed): (f64, f64, Option<u64>),
 ) {
     let law = followed.path.law();
     let pulled = Pulled::of(followed);
@@ -44,6 +44,9 @@ pub(super) fn print(
         ("warnings", json!(warnings)),
     ];
     object.extend(more.map(|(name, value)| (name.to_string(), value)));
+    if let Some(seed) = seed {
+        object.insert("seed".to_string(), json!(seed));
+    }
     if !job.at().is_empty() {
         let asked = followed.reached.iter().map(|(at, state)| {
             let mut object = scalars(Some(state));

@@ -19,6 +19,8 @@ pub(super) struct Header {
     pub(super) value_unit: Option<String>,
     /// What the numbers have to be multiplied by to be in their unit.
     pub(super) factor: Option<f64>,
+    /// Whether that and the unit come from a line that any line with a unit overrules.
+    is_bit2nm: bool,
     /// Unit of the coordinates of points.
     pub(super) lateral_unit: Option<String>,
     /// Numbers of columns and rows.
@@ -110,6 +112,9 @@ impl Header {
             self.height = Length::parse(value);
         } else if is(VALUE_UNIT) || is(DATA_UNIT) {
             self.value_unit = some(value);
+            if std::mem::take(&mut self.is_bit2nm) {
+                self.factor = None;
+            }
         } else if is(SIDE_UNIT) {
             self.side_unit = some(value);
         } else if is(COLUMNS) {
@@ -129,8 +134,9 @@ impl Header {
             // SPIP has lengths in nm.
             self.side_unit.get_or_insert_with(|| "nm".to_string());
         } else if is("bit2nm") {
-            // A unit of its own takes precedence.
+            // A unit of its own takes precedence, on whichever line it stands.
             if self.value_unit.is_none() {
+                self.is_bit2nm = true;
                 self.factor = number(value);
                 self.value_unit = some("nm");
             }

@@ -26,6 +26,24 @@ fn columns_are_profiles() -> TestResult {
     Ok(())
 }
 
+/// A unit of heights overrules `Bit2nm`, on whichever line it stands; without one it counts.
+#[test]
+fn units_overrule_bit2nm() -> TestResult {
+    let lines = ["# Bit2nm = 0.5\n", "# z-unit = nm\n"];
+    for (head, step) in [
+        (lines.concat(), 1e-9),
+        ([lines[1], lines[0]].concat(), 1e-9),
+        (lines[0].to_string(), 0.5e-9),
+    ] {
+        let text = format!("{head}# Width = 2 um\n# Height = 1 um\n1 2\n");
+        let measured = ReadOptions::new().read_bytes(text, "map.txt")?;
+        for (height, number) in measured.heights.iter().zip([1.0, 2.0]) {
+            assert!((height / (step * number) - 1.0).abs() < 1e-15, "{head}: {height}");
+        }
+    }
+    Ok(())
+}
+
 /// A straight line stays one on even steps, and what happened is said; where a height is missing its neighbours between
 /// are too.
 #[test]
