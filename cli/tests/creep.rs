@@ -195,7 +195,7 @@ fn refusals() -> Done {
     // Units are those that are asked for.
     let line = format!("creep path.npz {SERIES} --load 3.41e-7 --time 3 --units mm-N-MPa");
     let told = run(&folder.0, &line)?;
-    let units = told.lines().skip_while(|line| !line.contains("effective")).nth(1);
+    let units = told.lines().skip_while(|line| !line.contains("effective      load")).nth(1);
     let units: Vec<&str> = units.ok_or("no table")?.split_whitespace().collect();
     assert_eq!(units, ["s", "N", "N", "%", "mm", "mm"], "{told}");
     let beyond = output(&folder.0, &format!("creep path.npz {SERIES} --approach 1"))?;

@@ -173,10 +173,10 @@ impl<'a> Course<'a> {
             self.followed.missed = left;
             let mut ends = job.targets().iter();
             let reached = ends.find(|target| is_there(target, &state.contact, &grid));
+            let next = self.targets();
             if let (AdhesiveEnd::Target, None) = (end, reached)
-                && !self.followed.missed.is_empty()
+                && !next.is_empty()
             {
-                let next = self.targets();
                 let turned = self.followed.path.load_to_first_of(&next);
                 turned.map_err(|error| Failure::new("the path broke off", error))?;
                 continue;
