@@ -21,6 +21,9 @@ pub(crate) enum Format {
     Vti,
 }
 
+/// The surface that is left behind unloading.
+pub(super) const RESIDUAL_SURFACES: [&str; 2] = ["residual_surface.npy", "residual_surface.x3p"];
+
 impl Format {
     /// The files of the last state.
     pub(super) fn files(self) -> &'static [&'static str] {

@@ -8,11 +8,10 @@ use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::outcome::{Failure, check_input, is_same};
 use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
-use super::fields::Format;
+use super::fields::{Format, RESIDUAL_SURFACES};
 use super::joint::Joint;
 use super::roughness::Roughness;
 use super::shift::Shift;
-use super::unloading;
 use super::updater::{Updater, no_room};
 use crate::adhesion::Sticking;
 use crate::at::At;
@@ -197,7 +196,7 @@ impl Options {
     pub(super) fn check(&self) -> Result<(), Failure> {
         At::check(&self.at, self.has_open_end())?;
         let is_left = self.unload && self.sticking.law().is_none();
-        let left: &[&str] = if is_left { &unloading::SURFACES } else { &[] };
+        let left: &[&str] = if is_left { &RESIDUAL_SURFACES } else { &[] };
         let fields = self.fields.map_or(&[][..], Format::files);
         for file in [&self.surface, &self.against_surface].into_iter().flatten() {
             if self.record.as_ref().is_some_and(|kept| is_same(kept, file)) {

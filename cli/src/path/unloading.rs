@@ -8,15 +8,13 @@ use asperity::loading::{History, LoadingBuilder};
 use asperity::{LoadingSolver, LoadingState};
 
 use super::Solver;
+use super::fields::RESIDUAL_SURFACES;
 use super::job::Job;
 use super::lines::printed;
 use super::loop_chart::{self, Branches};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::say;
-
-/// The surface that is left.
-pub(super) const SURFACES: [&str; 2] = ["residual_surface.npy", "residual_surface.x3p"];
 
 /// Writes and draws the states on unloading, from the last state of the path to the last touch, and writes the surface
 /// that is left; prints what the loop costs.
@@ -79,7 +77,7 @@ pub(super) fn write(
             quantity(plastic.volume, "m³", 4)
         );
     }
-    let [npy, x3p] = SURFACES.map(|name| directory.join(name));
+    let [npy, x3p] = RESIDUAL_SURFACES.map(|name| directory.join(name));
     let heights = surface.matrix();
     write_npy(&npy, heights).map_err(|error| Failure::writing(&npy, error))?;
     write_x3p(&x3p, &job.grid(), heights).map_err(|error| Failure::writing(&x3p, error))?;
