@@ -36,7 +36,8 @@ fn units_overrule_bit2nm() -> TestResult {
         (lines[0].to_string(), 0.5e-9),
     ] {
         let text = format!("{head}# Width = 2 um\n# Height = 1 um\n1 2\n");
-        let measured = ReadOptions::new().read_bytes(text, "map.txt")?;
+        let options = ReadOptions::new().layout(crate::io::TextLayout::Matrix);
+        let measured = options.read_bytes(text, "map.txt")?;
         for (height, number) in measured.heights.iter().zip([1.0, 2.0]) {
             assert!((height / (step * number) - 1.0).abs() < 1e-15, "{head}: {height}");
         }
