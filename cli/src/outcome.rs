@@ -129,6 +129,12 @@ pub fn check_place(name: &Path) -> Result<(), Failure> {
     std::fs::File::create(&probe).and_then(|_| std::fs::remove_file(&probe)).map_err(failed)
 }
 
+/// Where files are written: into the folder that is given, or `out`; nowhere if a program asks for an object alone.
+#[must_use]
+pub fn directory(given: Option<&Path>, json: bool) -> Option<&Path> {
+    given.or_else(|| (!json).then(|| Path::new("out")))
+}
+
 /// Whether two names are of one file that is there.
 #[must_use]
 pub fn is_same(one: &Path, other: &Path) -> bool {

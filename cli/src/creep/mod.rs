@@ -15,8 +15,6 @@ mod table;
 mod touch_times;
 mod words;
 
-use std::path::Path;
-
 use asperity::bed::Bed;
 use asperity::record::LoadingRecord;
 use asperity_cli::outcome::{self, Failure, Outcome};
@@ -38,10 +36,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let record = LoadingRecord::read_npz(&options.record)
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
     let failed = |error| Failure::new("cannot let this contact creep", error);
-    let directory = match (&options.out, options.json) {
-        (None, true) => None,
-        (out, _) => Some(out.as_deref().unwrap_or_else(|| Path::new("out"))),
-    };
+    let directory = outcome::directory(options.out.as_deref(), options.json);
     if let (Some(history), Some(directory)) = (&options.history, directory) {
         outcome::check_input(history, directory, &["creep.csv", "leak_over_time.csv"])?;
     }

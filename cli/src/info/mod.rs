@@ -13,7 +13,7 @@ use asperity::surface::{
     self, ArealParameters, Estimate, HeightMap, ProfileParameters, Topography, Trend, Window,
 };
 use asperity_cli::number::{counted, quantity};
-use asperity_cli::outcome::{Failure, Outcome, of_program};
+use asperity_cli::outcome::{self, Failure, Outcome, of_program};
 use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
 use clap::Args;
@@ -72,17 +72,15 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     } else {
         print(options, &measured, &whole, found)?;
     }
-    let directory = match (&options.out, options.json) {
-        (Some(directory), _) => directory.clone(),
-        (None, false) => PathBuf::from("out"),
-        (None, true) => return Ok(()),
+    let Some(directory) = outcome::directory(options.out.as_deref(), options.json) else {
+        return Ok(());
     };
     panel::register_font()?;
-    std::fs::create_dir_all(&directory)
+    std::fs::create_dir_all(directory)
         .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
-    outcome.written(picture::map(&whole, &directory));
-    outcome.written(picture::statistics(&whole, &directory));
+    outcome.written(picture::map(&whole, directory));
+    outcome.written(picture::statistics(&whole, directory));
     outcome.finish()
 }
 

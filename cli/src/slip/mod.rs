@@ -97,10 +97,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let bed = Bed::of_record(&record)
         .map_err(|error| Failure::new(format!("cannot shear the path of {file}"), error))?;
     let joint = Joint::new(&bed, &record, options)?;
-    let directory = match (&options.out, options.json) {
-        (None, true) => None,
-        (out, _) => Some(out.as_deref().unwrap_or_else(|| Path::new("out"))),
-    };
+    let directory = outcome::directory(options.out.as_deref(), options.json);
     if let (Some(history), Some(directory)) = (&options.history, directory) {
         outcome::check_input(history, directory, &TABLES)?;
     }

@@ -15,7 +15,7 @@ mod words;
 use std::path::PathBuf;
 
 use asperity::record::LoadingRecord;
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
@@ -116,21 +116,19 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     words::print(&moment, &bodies);
     warnings.iter().for_each(speech::warn);
-    let directory = match (&options.out, options.json) {
-        (Some(directory), _) => directory.clone(),
-        (None, false) => PathBuf::from("out"),
-        (None, true) => return Ok(()),
+    let Some(directory) = outcome::directory(options.out.as_deref(), options.json) else {
+        return Ok(());
     };
     panel::register_font()?;
-    std::fs::create_dir_all(&directory)
+    std::fs::create_dir_all(directory)
         .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     let place = |name: &str| directory.join(name);
     outcome.written(table::write(&moment, &bodies, &place("stress.csv")));
     outcome.written(charts::draw(&bodies, &place("stress.png")));
     let Some(body) = bodies.first() else { return outcome.finish() };
-    outcome.all_written(maps::draw(&moment, body, &directory));
+    outcome.all_written(maps::draw(&moment, body, directory));
     let volume = options.volume.map(|count| (place("stress.vti"), count));
-    outcome.all_written(section::draw(&moment, body, volume, &directory));
+    outcome.all_written(section::draw(&moment, body, volume, directory));
     outcome.finish()
 }
