@@ -109,6 +109,13 @@ impl Grid {
         Ok(())
     }
 
+    /// The grid with twice as many nodes in either direction that has several, on which nothing meets itself around
+    /// the border. They may be more than [`Grid::MAX_SIDE`].
+    pub(crate) fn padded(&self) -> Self {
+        let twice = |n: usize| if n > 1 { 2 * n } else { 1 };
+        Self { nx: twice(self.nx), ny: twice(self.ny), ..*self }
+    }
+
     /// The grid with x and y exchanged.
     #[must_use]
     pub fn transposed(&self) -> Self {

@@ -7,7 +7,7 @@
 //! image lies where a tag says: rows of float32, each padded to a multiple of eight bytes, in metres. A node is
 //! missing where it holds `InvalidPixelValue` or NaN. Icon and texture are not read.
 
-use super::bytes::{Bytes, latin1, reserved, shape};
+use super::bytes::{Bytes, reserved, shape, text_before_zero};
 use super::fault::Fault;
 use super::number::{Number, parsed};
 use super::raw::{Channel, Parsed};
@@ -76,19 +76,14 @@ impl<'a> Tags<'a> {
         self.0
             .chunks_exact(TAG)
             .map(|tag| tag.split_at(KEY))
-            .find(|(found, _)| text(found) == key)
-            .map(|(_, value)| text(&value[..VALUE]))
+            .find(|(found, _)| text_before_zero(found) == key)
+            .map(|(_, value)| text_before_zero(&value[..VALUE]))
     }
 
     fn number<T: std::str::FromStr>(&self, key: &str) -> Result<T, Fault> {
         let value = self.find(key).ok_or_else(|| fault!("there is no tag {key}"))?;
         parsed(&format!("tag {key}"), &value, None)
     }
-}
-
-/// The text before the first zero: what follows it means nothing.
-fn text(bytes: &[u8]) -> String {
-    latin1(bytes.split(|byte| *byte == 0).next().unwrap_or_default())
 }
 
 #[cfg(test)]

@@ -162,6 +162,12 @@ pub(super) fn shape(
     Ok((nx, ny))
 }
 
+/// Latin-1 before the first zero: what follows it means nothing.
+#[cfg(feature = "io")]
+pub(super) fn text_before_zero(bytes: &[u8]) -> String {
+    latin1(bytes.split(|byte| *byte == 0).next().unwrap_or_default())
+}
+
 /// Latin-1 without the blanks and zeros that pad it: any bytes have a meaning in it.
 #[cfg(feature = "io")]
 pub(super) fn latin1(bytes: &[u8]) -> String {

@@ -7,7 +7,7 @@
 //! whose names are labels of that dimension. The unit of the wave is the metre even if some layers are phases: these
 //! are known by their names. The first row is the lowest. Earlier versions have one dimension, and shorter headers.
 
-use super::bytes::{Bytes, Order, latin1, shape};
+use super::bytes::{Bytes, Order, shape, text_before_zero};
 use super::fault::Fault;
 use super::number::Number;
 use super::raw::{Channel, Parsed};
@@ -32,18 +32,24 @@ const UNIT: usize = 4;
 /// Most layers of a wave: there are a dozen signals, forwards and backwards.
 const MOST: u32 = 256;
 
-/// Units of what the names of layers begin with, and are no lengths although the wave says so.
-const OTHERS: [(&str, &str); 9] = [
-    ("Phase", "deg"),
-    ("NapPhase", "deg"),
-    ("Potential", "V"),
-    ("NapPotential", "V"),
-    ("Current", "A"),
-    ("Frequency", "Hz"),
-    ("Drive", "V"),
-    ("Dissipation", "W"),
-    ("UserIn", "V"),
+/// What the names of layers begin with that have the unit of the wave.
+const LENGTHS_OF_WAVE: [&str; 4] = ["Height", "ZSensor", "Deflection", "Amplitude"];
+
+/// Units, or none, of others, which are no lengths although the wave says so. Beside a layer of these or those, labels
+/// that are not known are volts.
+const OTHERS: [(&str, Option<&str>); 7] = [
+    ("Phase", Some("deg")),
+    ("Current", Some("A")),
+    ("Frequency", Some("Hz")),
+    ("Dissipation", Some("W")),
+    ("Capacitance", Some("F")),
+    ("Count", None),
+    ("QFactor", None),
 ];
+const VOLT: &str = "V";
+
+/// What may stand before these names.
+const PREFIXES: [&str; 2] = ["DAC", "Nap"];
 
 /// Whether these are the headers of a wave: their sum in whole numbers of 16 bits is zero.
 pub(super) fn looks_like(file: &[u8]) -> bool {
@@ -64,6 +70,34 @@ fn checksum(headers: &[u8], order: Order) -> u16 {
         Order::Big => u16::from_be_bytes(pair),
     };
     numbers.map(number).fold(0, u16::wrapping_add)
+}
+
+/// What the name of a layer tells of its unit; `None` if it is not known.
+enum Named {
+    OfWave,
+    Other(Option<&'static str>),
+}
+
+impl Named {
+    fn of(name: &str) -> Option<Self> {
+        let bare = |name, prefix: &&str| str::strip_prefix(name, *prefix).unwrap_or(name);
+        let name = PREFIXES.iter().fold(name, bare);
+        let is_of_wave = LENGTHS_OF_WAVE.iter().any(|begin| name.starts_with(begin));
+        let other = || OTHERS.iter().find(|(begin, _)| name.starts_with(begin));
+        if is_of_wave { Some(Self::OfWave) } else { other().map(|(_, unit)| Self::Other(*unit)) }
+    }
+}
+
+/// Units of the layers of a wave.
+fn units(names: &[String], of_wave: Option<&String>) -> Vec<Option<String>> {
+    let known: Vec<_> = names.iter().map(|name| Named::of(name)).collect();
+    let is_known = known.iter().any(Option::is_some);
+    let unit = |(name, known): (&String, _)| match known {
+        Some(Named::Other(unit)) => unit.map(str::to_string),
+        None if is_known && !name.is_empty() => Some(VOLT.to_string()),
+        Some(Named::OfWave) | None => of_wave.cloned(),
+    };
+    names.iter().zip(known).map(unit).collect()
 }
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
@@ -96,10 +130,8 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     };
     let mut steps = at(STEPS)?;
     let cell = (steps.f64()?.abs(), steps.f64()?.abs());
-    let text = |place: usize, length: usize| {
-        let bytes = at(place)?.take(length)?;
-        Ok::<_, Fault>(latin1(bytes.split(|byte| *byte == 0).next().unwrap_or_default()))
-    };
+    let text =
+        |place: usize, length: usize| Ok::<_, Fault>(text_before_zero(at(place)?.take(length)?));
     let mut data = at(HEADERS)?;
     let layer = (nx * ny).saturating_mul(number.size());
     let all = data.elements(layers as usize, layer)?;
@@ -126,23 +158,20 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let (labels, length_of_labels) = part()?;
     let has_labels = length_of_labels >= LABEL.saturating_mul(1 + layers as usize);
     let whole = text(NAME, LABEL)?;
+    let name = |k: usize| match layers {
+        // The first label is that of the dimension.
+        _ if has_labels => text(labels.saturating_add((1 + k) * LABEL), LABEL),
+        1 => Ok(whole.clone()),
+        _ => Ok(format!("{whole} {}", k + 1)),
+    };
+    let names = (0..layers as usize).map(name).collect::<Result<Vec<_>, _>>()?;
+    let units = units(&names, height_unit.as_ref());
     all.chunks_exact(layer)
-        .enumerate()
-        .map(|(k, bytes)| {
-            let name = if has_labels {
-                // The first label is that of the dimension.
-                text(labels.saturating_add((1 + k) * LABEL), LABEL)?
-            } else if layers == 1 {
-                whole.clone()
-            } else {
-                format!("{whole} {}", k + 1)
-            };
-            let other = OTHERS.iter().find(|(begin, _)| name.starts_with(begin));
-            let unit =
-                other.map_or_else(|| height_unit.clone(), |(_, unit)| Some((*unit).to_string()));
+        .zip(names.into_iter().zip(units))
+        .map(|(bytes, (name, height_unit))| {
             let channel = Channel {
                 name,
-                height_unit: unit,
+                height_unit,
                 lateral_unit: x.clone(),
                 ..Channel::in_metres(
                     (nx, ny),
@@ -153,4 +182,37 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
             Ok(channel.turned())
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_have_units_of_their_own() {
+        let metre = "m".to_string();
+        let found = |names: &[&str]| {
+            let names: Vec<_> = names.iter().map(ToString::to_string).collect();
+            units(&names, Some(&metre))
+                .into_iter()
+                .map(Option::unwrap_or_default)
+                .collect::<Vec<_>>()
+        };
+        let of_microscope = [
+            ("HeightTrace", "m"),
+            ("NapZSensorRetrace", "m"),
+            ("DACDeflection", "m"),
+            ("Amplitude", "m"),
+            ("NapPhaseTrace", "deg"),
+            ("CapacitanceTrace", "F"),
+            ("CountTrace", ""),
+            ("QFactorTrace", ""),
+            ("UserIn0Trace", "V"),
+            ("InputTrace", "V"),
+        ];
+        let (names, wanted): (Vec<_>, Vec<_>) = of_microscope.into_iter().unzip();
+        assert_eq!(found(&names), wanted);
+        // What is called so by nobody but the user is what the wave says.
+        assert_eq!(found(&["Surface00", "before"]), ["m", "m"]);
+    }
 }

@@ -218,7 +218,7 @@ fn inflate(blocks: &[u8], count: usize) -> Result<Vec<u8>, Fault> {
         let (place, numbers, length) = (bytes.u64()?, bytes.u32()? as usize, bytes.u32()? as usize);
         let block = bytes.take(length)?;
         ensure!(
-            4 * numbers <= MAX_EXPANSION.saturating_mul(length),
+            numbers.saturating_mul(4) <= MAX_EXPANSION.saturating_mul(length),
             "no {length} compressed bytes can hold {numbers} heights, as a block claims"
         );
         found.push((place, numbers, block));
@@ -227,12 +227,12 @@ fn inflate(blocks: &[u8], count: usize) -> Result<Vec<u8>, Fault> {
     let mut data: Vec<u8> = Vec::new();
     for (place, numbers, block) in found {
         ensure!(
-            place == data.len() as u64 / 4 && data.len() / 4 + numbers <= count,
+            place == data.len() as u64 / 4 && (data.len() / 4).saturating_add(numbers) <= count,
             "a block of {numbers} heights is at {place}, but {} of {count} are before it",
             data.len() / 4
         );
         // One byte more than that shows a block that is too long.
-        let wanted = 4 * numbers;
+        let wanted = numbers.saturating_mul(4);
         let read = ZlibDecoder::new(block).take(wanted as u64 + 1).read_to_end(&mut data);
         let read = read.map_err(|error| fault!("the compressed heights are damaged: {error}"))?;
         ensure!(read == wanted, "a block of {numbers} heights holds {read} bytes");

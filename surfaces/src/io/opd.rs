@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::bytes::{Bytes, latin1, reserved, shape};
+use super::bytes::{Bytes, latin1, reserved, shape, text_before_zero};
 use super::fault::Fault;
 use super::number::{Number, positive};
 use super::raw::{Channel, Parsed};
@@ -23,7 +23,7 @@ const NAME: usize = 16;
 const KNOWN: [&str; 5] = ["Mult", "Wavelength", "Pixel_size", "Aspect", "Title"];
 
 /// Blocks of heights.
-const HEIGHTS: [&str; 5] = ["RAW_DATA", "RAW DATA", "OPD", "SAMPLE_DATA", "SAMPLE DATA"];
+const HEIGHTS: [&str; 6] = ["RAW_DATA", "RAW DATA", "Raw", "OPD", "SAMPLE_DATA", "SAMPLE DATA"];
 
 /// Integers from here on, and floating-point numbers, stand for missing heights.
 const MISSING: [f64; 2] = [32766.0, 1e10];
@@ -72,8 +72,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
 
 /// Name, type and length of the block that an entry announces.
 fn entry(bytes: &mut Bytes) -> Result<(String, u16, usize), Fault> {
-    let name = bytes.take(NAME)?;
-    let name = latin1(name.split(|byte| *byte == 0).next().unwrap_or_default());
+    let name = text_before_zero(bytes.take(NAME)?);
     let (kind, length, _flags) = (bytes.u16()?, bytes.u32()? as usize, bytes.u16()?);
     Ok((name, kind, length))
 }

@@ -3,9 +3,9 @@
 //! Sources: SurfaceTopography's `OPDx.py`, Gwyddion's `dektakvca.c`; a file of an instrument, which holds a profile.
 //!
 //! A tree of named items: a length and a name, a byte for the type, and what that asks for. Maps are containers in
-//! `2D_Data`, each with its numbers (`Matrix`, float32), their scale (`DataScale`), and points and extents of two
-//! dimensions, the first of which is y. Profiles are those in `1D_Data`: heights (`Array`), their scale, and positions
-//! (`PositionArray`).
+//! `2D_Data`, each with its numbers (`Matrix`, float32), their scale (`DataScale`), and points and extents (from the
+//! first node to the last) of two dimensions, the first of which is y. Profiles are those in `1D_Data`: heights
+//! (`Array`), their scale, and positions (`PositionArray`).
 
 use super::bytes::{Bytes, latin1, shape};
 use super::fault::Fault;
@@ -119,7 +119,8 @@ fn map_in(name: String, items: Bytes) -> Result<Option<Channel>, Fault> {
             let ratio =
                 if x == y { Some(1.0) } else { metres(&y).zip(metres(&x)).map(|(y, x)| y / x) };
             let ratio = ratio.ok_or_else(|| fault!("x is in '{x}', but y in '{y}'"))?;
-            (Some((lx / nx as f64, ly * ratio / ny as f64)), Some(x))
+            let cell = |extent: f64, n: usize| extent / n.saturating_sub(1).max(1) as f64;
+            (Some((cell(lx, nx), cell(ly * ratio, ny))), Some(x))
         }
         _ => (None, None),
     };
@@ -208,10 +209,13 @@ fn read<'a>(bytes: &mut Bytes<'a>) -> Result<Option<(&'a [u8], Item<'a>)>, Fault
     let name = text(bytes)?;
     let at = bytes.offset();
     let item = match bytes.u8()? {
-        0x00 => {
+        // A matrix, with a name of its own or without.
+        kind @ (0x00 | 0x45) => {
             text(bytes)?;
-            bytes.u32()?;
-            text(bytes)?;
+            if kind == 0x00 {
+                bytes.u32()?;
+                text(bytes)?;
+            }
             let mut content = Bytes::new(content(bytes)?);
             let (rows, columns) = (content.u32()?, content.u32()?);
             let (nx, ny) = shape(columns, rows)?;

@@ -329,8 +329,14 @@ fn told_apart(mut channels: Vec<Channel>) -> Vec<Channel> {
     for (channel, name) in channels.iter_mut().zip(&names) {
         if times.get(name.as_str()).is_some_and(|times| *times > 1) {
             let number = seen.entry(name).or_default();
-            *number += 1;
-            channel.name = format!("{name} [{number}]");
+            loop {
+                *number += 1;
+                channel.name = format!("{name} [{number}]");
+                // A name that stands in the file stays with its map.
+                if !times.contains_key(channel.name.as_str()) {
+                    break;
+                }
+            }
         }
     }
     channels
@@ -372,4 +378,19 @@ fn parse(
         Ok(told_apart(channels))
     });
     Ok((format, channels.map_err(|fault| fault.in_file(path, format.name()))?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_with_numbers_are_not_given_again() {
+        let named = |name: &str| Channel {
+            name: name.to_string(),
+            ..Channel::in_metres((1, 1), vec![0.0], None)
+        };
+        let found = told_apart(["A", "B", "A", "A [1]", "A"].map(named).into());
+        assert_eq!(names(&found), ["A [2]", "B", "A [3]", "A [1]", "A [4]"]);
+    }
 }

@@ -40,7 +40,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
                 let left = file.len() - line.offset;
                 let Axis { count, .. } = z;
                 ensure!(
-                    2 * count <= left + 1,
+                    count.saturating_mul(2) <= left + 1,
                     at(line.offset),
                     "{count} heights do not fit into the {left} bytes from here to the end"
                 );

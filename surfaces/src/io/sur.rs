@@ -20,7 +20,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::bytes::{Bytes, latin1, shape};
+use super::bytes::{Bytes, shape, text_before_zero};
 use super::fault::Fault;
 use super::number::{Number, positive};
 use super::profile;
@@ -96,7 +96,7 @@ impl Header {
         let field = |offset| Bytes::from(file, offset);
         let count = |offset| field(offset)?.u16();
         let length = |offset| field(offset)?.f32().map(f64::from);
-        let text = |offset| Ok::<_, Fault>(latin1(field(offset)?.take(16)?));
+        let text = |offset| Ok::<_, Fault>(text_before_zero(field(offset)?.take(16)?));
         let unit = |offset| Ok::<_, Fault>(Some(text(offset)?).filter(|text| !text.is_empty()));
         ensure!(
             count(12)? != 257,

@@ -132,8 +132,7 @@ impl HeightMap {
     /// ```
     #[must_use]
     pub fn skewness(&self) -> f64 {
-        let (mean, rms) = (self.mean_height(), self.rms_height());
-        self.mean(|z| ((z - mean) / rms).powi(3))
+        self.standardised(3)
     }
 
     /// Kurtosis of the heights, 3 for a normal distribution; NaN if all are equal.
@@ -143,8 +142,7 @@ impl HeightMap {
     /// ```
     #[must_use]
     pub fn kurtosis(&self) -> f64 {
-        let (mean, rms) = (self.mean_height(), self.rms_height());
-        self.mean(|z| ((z - mean) / rms).powi(4))
+        self.standardised(4)
     }
 
     /// Root mean square gradient from forward differences, without unit.
@@ -184,6 +182,16 @@ impl HeightMap {
             grid.dy(),
         );
         (along_x, along_y)
+    }
+
+    /// Mean of a power of the heights about their mean, over their rms height; NaN if all are equal, of which the mean
+    /// may round.
+    fn standardised(&self, power: i32) -> f64 {
+        if self.peak_to_valley() == 0.0 {
+            return f64::NAN;
+        }
+        let (mean, rms) = (self.mean_height(), self.rms_height());
+        self.mean(|z| ((z - mean) / rms).powi(power))
     }
 
     /// A power of two of the size of the heights, by which they are divided so that neither sums nor squares over-

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::{Filter, Topography, Trend, Window};
+use super::fourier::Waves;
+use super::{Topography, Trend, Window};
 use crate::number::quantity;
 
 /// Something about a surface that a person should look at: most often a unit that was mistaken. Nothing is refused
@@ -50,6 +51,8 @@ const TILT: f64 = 3.0;
 const SMOOTH: f64 = 1e-11;
 /// Cells of the shortest wave that counts as resolved, and the share that shorter waves may have.
 const CELLS: f64 = 4.0;
+/// Relative slack of it, for rounding.
+const SLACK: f64 = 1e-12;
 const UNRESOLVED: f64 = 0.1;
 /// Nodes a side of the piece in which waves are looked at: more of them tell nothing new, and take memory.
 const MIDDLE: std::ops::RangeInclusive<usize> = 16..=512;
@@ -89,8 +92,8 @@ impl Warning {
     }
 }
 
-/// The share of waves shorter than [`CELLS`] cells in the mean square gradient in the middle of a surface; `None` where
-/// there is no gradient, or too few nodes to tell waves apart.
+/// The share of waves shorter than [`CELLS`] cells, of whatever shape, in the mean square gradient in the middle of a
+/// surface; `None` where there is no gradient, or too few nodes to tell waves apart.
 fn short_waves(surface: &Topography) -> Option<f64> {
     let grid = surface.grid();
     let (nx, ny) = grid.shape();
@@ -106,10 +109,17 @@ fn short_waves(surface: &Topography) -> Option<f64> {
     // Maps need not repeat: jumps at their borders would be short waves.
     let levelled = piece.level(Trend::Plane).ok()?;
     let whole = levelled.window(Window::Hann).ok()?;
-    let shortest = CELLS * grid.dx().max(grid.dy());
-    let resolved = whole.low_pass(shortest, Filter::Sharp).ok()?;
-    let mean_square = |surface: &Topography| surface.rms_gradient_spectral().powi(2);
-    let share = 1.0 - mean_square(&resolved) / mean_square(&whole);
+    let greatest = std::f64::consts::TAU / CELLS * (1.0 + SLACK);
+    let (mut short, mut all) = (0.0, 0.0);
+    for wave in Waves::new(whole.heights(), whole.map().mean_height(), whole.grid()).iter() {
+        let (qx, qy) = wave.q;
+        let square = wave.count as f64 * wave.power * (qx * qx + qy * qy);
+        all += square;
+        if libm::hypot(qx * grid.dx(), qy * grid.dy()) > greatest {
+            short += square;
+        }
+    }
+    let share = short / all;
     share.is_finite().then_some(share)
 }
 
@@ -269,6 +279,18 @@ mod tests {
         assert!(is_half, "{found:?}");
         assert!(found[0].to_string().contains("% of the mean square gradient"));
         assert_eq!(warnings(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?, []);
+        Ok(())
+    }
+
+    /// 30 cells of 1 µm resolve a wave along x, however long cells are along y; three do not.
+    #[test]
+    fn oblong_cells_resolve_what_runs_along_their_short_sides() -> Result<(), Error> {
+        let grid = Grid::new(120, 60, 1e-6, 10e-6)?;
+        for (length, resolved) in [(30.0, true), (3.0, false)] {
+            let wave = |ix: usize| 1e-8 * (std::f64::consts::TAU * ix as f64 / length).sin();
+            let map = Topography::new(grid, DMatrix::from_fn(120, 60, |ix, _| wave(ix)))?;
+            assert_eq!(Warning::of_surface(&map).is_empty(), resolved, "{length}");
+        }
         Ok(())
     }
 }

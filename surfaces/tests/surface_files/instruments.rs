@@ -208,6 +208,8 @@ fn interferometers_state_their_units() -> TestResult {
         read(&waves),
         Err(Error::File(FileError::NoUnit { found: Some(unit), .. })) if unit == "waves"
     ));
+    let other = edited("missing_f32.opd", &[(b"RAW_DATA", b"Raw\0\0\0\0\0")]);
+    assert_eq!(read(&other)?.title, "made (Raw)");
     let found = read(&bytes("missing_f32.opd"))?;
     // 2⁻⁹ mm, and half as much again along y.
     assert_eq!(found.cell, Some((1e-3 / 512.0, 1.5e-3 / 512.0)));
@@ -226,6 +228,28 @@ fn interferometers_state_their_units() -> TestResult {
         &[(&[7, 0, 5, 0, 2, 0], &[7, 0, 5, 0, 3, 0])],
         "3 bytes each",
     );
+    Ok(())
+}
+
+/// The type, the name of the type and the numbers: the name of its own lacks, and what lies around is shorter by it.
+#[test]
+fn matrices_of_vision_need_no_name() -> TestResult {
+    let named = read(&bytes("missing_f32.opdx"))?;
+    let mut file = edited(
+        "missing_f32.opdx",
+        &[
+            (b"2D_Data}\x02\xe1", b"2D_Data}\x02\xd5"),
+            (b"RawG\x02\xcf", b"RawG\x02\xc3"),
+            (b"Matrix\0", b"Matrix\x45"),
+        ],
+    );
+    let name = b"\x01\0\0\0\x04\0\0\0Data";
+    let place = file.windows(name.len()).position(|window| window == name).ok_or("no name")?;
+    file.drain(place..place + name.len());
+    let found = read(&file)?;
+    assert_eq!((found.cell, found.missing), (named.cell, named.missing));
+    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+    assert!(found.heights.iter().zip(named.heights.iter()).all(same));
     Ok(())
 }
 

@@ -74,6 +74,16 @@ fn a_map_is_read() -> TestResult {
 }
 
 #[test]
+fn texts_end_at_their_zero() -> TestResult {
+    let mut file = plain();
+    put(&mut file, 164, *b"Height\0xy");
+    put(&mut file, 212, *b"nm\0um");
+    let found = only(parse(&file))?;
+    assert_eq!((found.name.as_str(), found.height_unit.as_deref()), ("Height", Some("nm")));
+    Ok(())
+}
+
+#[test]
 fn special_points_offset_and_zones_are_heeded() -> TestResult {
     let mut file = plain();
     put(&mut file, 86, [0, 0]);

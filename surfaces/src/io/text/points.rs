@@ -141,7 +141,7 @@ impl Axis {
             return Ok(Self { name, start, spacing: 1.0, nodes: 1 });
         }
         let count = sorted.len();
-        let (least, columns) = spacing(sorted, extent).ok_or_else(|| {
+        let Gaps { least, columns, intervals } = Gaps::find(sorted, extent).ok_or_else(|| {
             fault!(
                 "the {count} points lie on no regular grid: {name} has values from {start} to {end} that are less than \
                  {:e} apart, as on more than {} nodes",
@@ -149,8 +149,7 @@ impl Axis {
                 Grid::MAX_SIDE
             )
         })?;
-        // At most MAX_SIDE - 1, see there.
-        let intervals = (extent / least).round();
+        // More than a grid can have are refused with its shape.
         let nodes = intervals as usize + 1;
         ensure!(
             nodes <= columns.saturating_mul(MAX_COLUMNS),
@@ -175,20 +174,40 @@ impl Axis {
     }
 }
 
-/// The smallest distance between coordinates that are not the same but for rounding, and how many such coordinates
-/// there are; `None` if the distance is too small for a grid.
-fn spacing(mut sorted: Vec<f64>, extent: f64) -> Option<(f64, usize)> {
-    let mut last = sorted.first().copied()?;
-    for coordinate in &mut sorted {
-        (*coordinate, last) = (*coordinate - last, *coordinate);
+/// What lies between coordinates that are not the same but for rounding.
+struct Gaps {
+    /// The smallest distance.
+    least: f64,
+    /// How many such coordinates there are.
+    columns: usize,
+    /// Spacings from the first to the last.
+    intervals: f64,
+}
+
+impl Gaps {
+    /// `None` if the smallest distance is too small for a grid.
+    fn find(mut sorted: Vec<f64>, extent: f64) -> Option<Self> {
+        let mut last = sorted.first().copied()?;
+        for coordinate in &mut sorted {
+            (*coordinate, last) = (*coordinate - last, *coordinate);
+        }
+        let mut gaps = sorted;
+        gaps.sort_unstable_by(f64::total_cmp);
+        // Rounded to the number of nodes, hence the half.
+        let too_small = extent / (Grid::MAX_SIDE as f64 - 0.5);
+        let same = gaps.windows(2).position(|pair| match pair {
+            [below, gap] => *gap > too_small && *below <= SAME * *gap,
+            _ => false,
+        })?;
+        let gaps = gaps.get(same + 1..)?;
+        let least = *gaps.first()?;
+        // Each gap is rounded for itself, in the mean spacing of the smaller ones: the smallest is the one that
+        // coordinates with few digits make too small by most.
+        let (mut sum, mut intervals) = (0.0, 0.0);
+        for gap in gaps {
+            intervals += if sum > 0.0 { (gap / (sum / intervals)).round() } else { 1.0 };
+            sum += gap;
+        }
+        Some(Self { least, columns: gaps.len() + 1, intervals })
     }
-    let mut gaps = sorted;
-    gaps.sort_unstable_by(f64::total_cmp);
-    // Rounded to the number of nodes, hence the half.
-    let least = extent / (Grid::MAX_SIDE as f64 - 0.5);
-    gaps.windows(2)
-        .enumerate()
-        .filter_map(|(k, pair)| Some((k, *pair.first()?, *pair.last()?)))
-        .find(|(_, below, gap)| *gap > least && *below <= SAME * *gap)
-        .map(|(k, _, gap)| (gap, gaps.len() - k))
 }

@@ -1,4 +1,5 @@
-//! Text of a Wyko interferometer: heights in waves of light, one line for each place along x.
+//! Text of a Wyko interferometer: heights in waves of light, one line for each place along x, from below (as in
+//! Gwyddion's `opdfile.c`).
 //!
 //! A line of names ends with the type, the length in bytes and the value of a block. Pixels are in mm, the wavelength
 //! in nm.
@@ -70,7 +71,7 @@ pub(super) fn parse(mut lines: Lines) -> Parsed {
     let of_waves = unit.filter(|_| !is_in_nm).map(|unit| format!(" of {unit} nm"));
     let heights =
         if is_in_nm { "nm".to_string() } else { format!("waves{}", of_waves.unwrap_or_default()) };
-    Ok(vec![Channel {
+    let channel = Channel {
         name: value("Title").cloned().unwrap_or_default(),
         height_unit: Some(if unit.is_some() { "um" } else { "waves" }.to_string()),
         lateral_unit: Some("mm".to_string()),
@@ -78,5 +79,6 @@ pub(super) fn parse(mut lines: Lines) -> Parsed {
             "Wyko's text: {nx} lines along x of {ny} heights along y, in {heights}"
         ),
         ..Channel::in_metres((nx, ny), values, pixel.map(|pixel| (pixel, pixel * aspect)))
-    }])
+    };
+    Ok(vec![channel.turned()])
 }

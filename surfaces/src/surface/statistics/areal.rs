@@ -1,9 +1,9 @@
 //! Texture of a map: ISO 25178-2.
 
 use super::material_ratio::{CoreParameters, MaterialRatio};
+use crate::Error;
 use crate::surface::fourier::Waves;
 use crate::surface::{Topography, Trend};
-use crate::{Error, Grid};
 
 /// The autocorrelation that a surface has no memory below.
 const DECAYED: f64 = 0.2;
@@ -162,8 +162,7 @@ impl Correlation {
     fn of(map: &Topography) -> Option<Self> {
         let grid = map.grid();
         let (nx, ny) = grid.shape();
-        let twice = |n: usize| if n > 1 { 2 * n } else { 1 };
-        let wide = Grid::new(twice(nx), twice(ny), grid.dx(), grid.dy()).ok()?;
+        let wide = grid.padded();
         let mut padded = nalgebra::DMatrix::zeros(wide.nx(), wide.ny());
         let mean = map.map().mean_height();
         let heights = map.heights().map(|height| height - mean);
@@ -192,6 +191,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::Grid;
 
     fn map(
         (nx, ny): (usize, usize),
@@ -251,6 +251,31 @@ mod tests {
         assert_eq!((flat.core.sk, flat.core.spk, flat.core.svk), (0.0, 0.0, 0.0));
         let single = map((1, 1), (1.0, 1.0), |_, _| 3.0)?.areal_parameters()?;
         assert_eq!((single.sz, single.sdr, single.sal), (0.0, 0.0, None));
+        Ok(())
+    }
+
+    /// Nor has one whose mean rounds.
+    #[test]
+    fn flat_maps_have_no_shape() -> Result<(), Error> {
+        for shape in [(3, 1), (7, 3)] {
+            let flat = map(shape, (1.0, 1.0), |_, _| 0.1)?;
+            assert!(flat.map().skewness().is_nan() && flat.map().kurtosis().is_nan());
+            let found = flat.areal_parameters()?;
+            assert!(found.ssk.is_nan() && found.sku.is_nan(), "{found:?}");
+            assert_eq!((found.sq, found.sal, found.core.sk), (0.0, None, 0.0));
+        }
+        let profile = map((3, 1), (1.0, 1.0), |_, _| 0.1)?.profile_parameters(None)?;
+        assert!(profile.rsk.is_nan() && profile.rku.is_nan() && profile.rq == 0.0, "{profile:?}");
+        Ok(())
+    }
+
+    /// Twice as many nodes as this are more than a grid can have.
+    #[test]
+    fn long_maps_have_lengths_too() -> Result<(), Error> {
+        let k = TAU / 25.0;
+        let found = map((20_000, 3), (1.0, 1.0), |x, _| (k * x).sin())?.areal_parameters()?;
+        let sal = 0.2_f64.acos() / k;
+        assert!((found.sal.unwrap_or_default() / sal - 1.0).abs() < 0.02, "{found:?}");
         Ok(())
     }
 

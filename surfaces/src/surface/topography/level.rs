@@ -111,8 +111,12 @@ impl Topography {
     ///
     /// [`Error::HeightNotFinite`] if differences of heights overflow.
     pub fn level(&self, trend: Trend) -> Result<Self, Error> {
-        let fitted = self.trend(trend);
         let (nx, ny) = self.grid.shape();
+        // The mean of heights that are all equal may round, but nothing is left of them.
+        if self.map.peak_to_valley() == 0.0 {
+            return self.with_heights(DMatrix::zeros(nx, ny));
+        }
+        let fitted = self.trend(trend);
         self.with_heights(DMatrix::from_fn(nx, ny, |ix, iy| {
             let (x, y) = self.grid.position(ix, iy);
             self.heights()[(ix, iy)] - fitted.at(x, y)

@@ -83,6 +83,14 @@ fn coordinates_may_be_rounded_but_not_scattered() -> TestResult {
     let dx = coarse.cell.ok_or("no cell")?.0;
     // The last coordinate, 6.33, is 0.0033 too small.
     assert!((dx * 19.0 - 6.33).abs() < 1e-14);
+    // So are those of many columns, some of which may lack.
+    for gap in [0, 7] {
+        let place = |k: usize| if k < 30 { k } else { k + gap };
+        let many: String = (0..180)
+            .map(|k| format!("{:.2} {} {k}\n", place(k % 60) as f64 / 3.0, k / 60))
+            .collect();
+        assert_eq!(parsed(many)?.shape, (60 + gap, 3));
+    }
     assert_refused(list(&|k| format!("{:.1}", k as f64 / 3.0)), "not evenly spaced");
     assert_refused(
         list(&|k| (k * k).to_string()),
