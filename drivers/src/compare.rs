@@ -153,6 +153,13 @@ pub(crate) fn same_path(
             (here, before) => here.or(before),
         };
         let by_error = error * rate.unwrap_or(0.0);
+        // The energy is what comes in, which goes with the approach, less plastic work, which a window knows in parts
+        // of what is done from its beginning to its end.
+        let of_work_in = 3.0 * bounds.load * expected.contact.energy.max(greatest)
+            + (expected.contact.load + by_error) * error;
+        let of_work = bounds.load * plastic.work + error * last.map_or(0.0, |last| last.load);
+        let work = |state: &LoadingState| state.contact.plastic.unwrap_or_default().work;
+        let work_in = |state: &LoadingState| state.contact.energy + work(state);
         let mut scalars = [
             (
                 "approach",
@@ -170,10 +177,9 @@ pub(crate) fn same_path(
                 "energy",
                 state.contact.energy,
                 expected.contact.energy,
-                // Where nodes yield it is what comes in less plastic work, each of which goes with the approach.
-                3.0 * bounds.load * expected.contact.energy.max(greatest)
-                    + if yields { 2.0 } else { 1.0 } * (expected.contact.load + by_error) * error,
+                of_work_in + if yields { of_work } else { 0.0 },
             ),
+            ("work that comes in", work_in(state), work_in(expected), of_work_in),
             (
                 "mean gap",
                 state.contact.mean_gap,
@@ -221,9 +227,8 @@ pub(crate) fn same_path(
             ensure!(is_other || a.yielded_nodes == b.yielded_nodes, "{}", context());
             // What is yielded sinks no faster than the approach, under no more than the last load.
             let volume = bounds.load * plastic.volume + error * last.contact_area;
-            let work = bounds.load * plastic.work + error * last.load;
             scalars.push(("plastic volume", a.volume, b.volume, volume));
-            scalars.push(("plastic work", a.work, b.work, work));
+            scalars.push(("plastic work", a.work, b.work, of_work));
         }
         for (what, a, b, allowed) in scalars {
             tally.close(what, a, b, allowed).map_err(|violation| violation.during(context()))?;
