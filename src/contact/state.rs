@@ -98,22 +98,29 @@ impl ContactState {
 
     /// Whether all quantities are finite; in full contact the interfacial stiffness need not be.
     pub(crate) fn is_finite(&self) -> bool {
-        let quantities = [
-            self.approach,
-            self.load,
-            self.contact_area,
-            self.contact_area_fraction,
-            self.mean_gap,
-            self.energy,
-        ];
-        let full = self.contact_area_fraction == 1.0;
+        self.not_finite().is_none()
+    }
+
+    /// A quantity that is not finite, with its name; in full contact the interfacial stiffness need not be.
+    pub(crate) fn not_finite(&self) -> Option<(&'static str, f64)> {
         let plastic = self.plastic.unwrap_or_default();
-        let plastic =
-            [plastic.volume, plastic.work, plastic.volume_per_load, plastic.work_per_load];
         let interfacial = self.interfacial_stiffness.unwrap_or_default();
-        quantities.iter().chain(&plastic).all(|quantity| quantity.is_finite())
-            && self.contact_stiffness.unwrap_or_default().is_finite()
-            && (interfacial.is_finite() || (full && !interfacial.is_nan()))
+        let is_full = self.contact_area_fraction == 1.0;
+        let quantities = [
+            ("approach", self.approach),
+            ("load", self.load),
+            ("contact area", self.contact_area),
+            ("contact area fraction", self.contact_area_fraction),
+            ("mean gap", self.mean_gap),
+            ("elastic energy", self.energy),
+            ("plastic volume", plastic.volume),
+            ("plastic work", plastic.work),
+            ("plastic volume for each newton", plastic.volume_per_load),
+            ("plastic work for each newton", plastic.work_per_load),
+            ("contact stiffness", self.contact_stiffness.unwrap_or_default()),
+            ("interfacial stiffness", if is_full { interfacial.min(0.0) } else { interfacial }),
+        ];
+        quantities.into_iter().find(|(_, value)| !value.is_finite())
     }
 
     /// Puts back the stiffness of full contact, for formats without infinity, such as JSON, which lose it.
@@ -121,6 +128,10 @@ impl ContactState {
     pub(crate) fn restore_infinity(&mut self) {
         if self.contact_area_fraction == 1.0 {
             self.interfacial_stiffness.get_or_insert(f64::INFINITY);
+            let plastic = self.plastic.as_mut();
+            if let Some(known) = plastic.filter(|p| p.contact_unloading_stiffness.is_some()) {
+                known.interfacial_unloading_stiffness.get_or_insert(f64::INFINITY);
+            }
         }
     }
 

@@ -62,7 +62,10 @@ impl<'a> ActiveSet<'a> {
                 return Err(self.no_convergence());
             }
             if worst > working.tolerance {
-                self.best = self.best.min(worst);
+                // Below the tolerance what is not verified means nothing.
+                if worst > criteria.tolerance {
+                    self.best = self.best.min(worst);
+                }
             } else if !criteria.verify {
                 return Ok(self.progress.iterations);
             } else {

@@ -37,10 +37,11 @@ impl MemoryBudget {
         nested: bool,
     ) -> Result<Self, Error> {
         let mut level = *grid;
-        let mut grids = WORKSPACE + Problem::bytes_on(grid, boundary) + on_level(&level, boundary);
+        let finest = Problem::bytes_on(grid, boundary).saturating_add(on_level(&level, boundary));
+        let mut grids = finest.saturating_add(WORKSPACE);
         while nested && level.nx().max(level.ny()) > COARSEST {
             level = Blocks::new(level, boundary)?.grid();
-            grids += on_level(&level, boundary);
+            grids = grids.saturating_add(on_level(&level, boundary));
         }
         let memory = Self { budget, grids };
         memory.check(0)?;
@@ -54,7 +55,7 @@ impl MemoryBudget {
     /// [`Error::MemoryBudget`] otherwise.
     pub(super) fn check(&self, contact_nodes: usize) -> Result<(), Error> {
         let each = Preconditioner::BYTES_A_NODE + CONTACT_VALUES * size_of::<f64>();
-        let needed = self.grids.saturating_add(contact_nodes * each);
+        let needed = self.grids.saturating_add(contact_nodes.saturating_mul(each));
         if needed <= self.budget {
             return Ok(());
         }
@@ -70,6 +71,7 @@ impl MemoryBudget {
 fn on_level(grid: &Grid, boundary: Boundary) -> usize {
     let convolution = Convolution::bytes_on(grid, boundary);
     // In single precision as well.
-    let convolutions = convolution + convolution / 2;
-    grid.nodes() * VALUES * size_of::<f64>() + convolutions + (grid.nx() + grid.ny()) * PLANS
+    let convolutions = convolution.saturating_add(convolution / 2);
+    let values = grid.nodes().saturating_mul(VALUES * size_of::<f64>());
+    values.saturating_add(convolutions).saturating_add((grid.nx() + grid.ny()) * PLANS)
 }

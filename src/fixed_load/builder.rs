@@ -31,8 +31,8 @@ impl<'a> FixedLoadBuilder<'a> {
     /// [`FixedLoadSolution::fields`](super::FixedLoadSolution::fields) has what stays of them. Infinity, as by default,
     /// is elastic contact.
     ///
-    /// A solution takes some ten elastic ones, and states are not continued from each other. A load of H times the
-    /// nominal area or more is an [`Error::OutOfRange`]: all nodes yield below it.
+    /// A solution takes some ten elastic ones. A load of H times the nominal area or more is an
+    /// [`Error::BeyondHardness`]: all nodes yield below it.
     pub fn hardness(mut self, hardness: f64) -> Self {
         self.hardness = Limit::Uniform(hardness);
         self
@@ -52,7 +52,8 @@ impl<'a> FixedLoadBuilder<'a> {
         self
     }
 
-    /// Steps of conjugate gradients after which to give up, 5000 by default.
+    /// Steps of conjugate gradients after which to give up, 5000 by default, in each of the elastic solutions that a
+    /// solution with a hardness, or of a load that is searched for, is made of.
     pub fn max_iterations(mut self, iterations: usize) -> Self {
         self.settings.max_iterations = iterations;
         self

@@ -187,6 +187,7 @@ mod tests {
                 displacement: nodes
                     .map(|node| total * (self.total_gap_rate(node, sum) + level.uniform()))
                     .collect(),
+                drift: 0.0,
             }
         }
 

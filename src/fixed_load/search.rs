@@ -107,8 +107,9 @@ impl Sought {
             Self::Nodes(_) => (1.0, false),
             Self::Approach { .. } => (0.2, false),
             Self::MeanGap { unloaded, .. } => match state.interfacial_stiffness {
-                Some(stiffness) => (state.load / stiffness / unloaded, true),
-                None => (0.2, false),
+                // On a plateau there is none.
+                Some(stiffness) if stiffness > 0.0 => (state.load / stiffness / unloaded, true),
+                _ => (0.2, false),
             },
         }
     }
@@ -158,7 +159,11 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
     for _ in 0..MOST_STEPS {
         if let Some(greatest) = stepper.greatest_load() {
             // No state has that load.
-            x = x.min(greatest.ln() - NARROWEST.sqrt());
+            let most = greatest.ln() - NARROWEST.sqrt();
+            if x > most && low == Some(most) {
+                break;
+            }
+            x = x.min(most);
         }
         let solution = stepper.step_to_load(x.exp())?;
         let state = &solution.contact;

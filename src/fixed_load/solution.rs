@@ -31,7 +31,7 @@ pub struct FixedLoadSolution {
     pub effort: SolverEffort,
 }
 
-/// The effort of a solution.
+/// The effort of a solution; where its load was searched for, of the last step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -70,14 +70,12 @@ impl FixedLoadSolution {
                 grid.check_finite(field, values)?;
             }
         }
-        if self.contact.is_finite() {
-            return Ok(());
+        match self.contact.not_finite() {
+            None => Ok(()),
+            Some((quantity, value)) => {
+                Err(Error::OutOfRange { quantity, value, expected: "finite, as all of a state" })
+            }
         }
-        Err(Error::OutOfRange {
-            quantity: "approach of a solution",
-            value: self.contact.approach,
-            expected: "finite, as all of its state",
-        })
     }
 
     /// The solution that `level` holds, without stiffnesses; its load is `load` if that was

@@ -133,7 +133,13 @@ impl FixedLoadSolver {
     /// of it is in contact, [`Error::NoConvergence`], [`Error::FactorizationFailed`] if the kernel is
     /// not positive definite, and [`Error::MemoryBudget`] if more nodes are in contact than fit.
     pub fn add_stiffness(&mut self, solution: &mut FixedLoadSolution) -> Result<(), Error> {
-        self.grid().check_shape(solution.fields.contact_map.shape())?;
+        let fields = &solution.fields;
+        // They are public.
+        for shape in
+            [fields.contact_map.shape(), fields.yielded_map.shape(), fields.pressure.shape()]
+        {
+            self.grid().check_shape(shape)?;
+        }
         self.hierarchy.take_convolutions();
         let finest = &mut self.hierarchy.finest;
         Tangent::default().complete(finest, &self.settings, solution)

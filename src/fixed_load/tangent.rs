@@ -18,6 +18,8 @@ use crate::parallel::inside;
 pub(super) struct Tangent {
     pub(super) rate: Vec<f64>,
     pub(super) displacement: Vec<f64>,
+    /// What displacements may be off by: see [`Field`].
+    pub(super) drift: f64,
 }
 
 /// The result of solving for a tangent.
@@ -36,7 +38,10 @@ impl Tangent {
     pub(super) fn of(level: &mut Level, solution: &FixedLoadSolution) -> Result<Self, Error> {
         let state = &solution.contact;
         let interfacial = match state.interfacial_stiffness {
-            Some(interfacial) if !solution.pressure_rate.is_empty() => interfacial,
+            // On a plateau there is none.
+            Some(interfacial) if interfacial > 0.0 && !solution.pressure_rate.is_empty() => {
+                interfacial
+            }
             _ => return Ok(Self::default()),
         };
         // 1 / K = 1 / Kᵢ + s / ΔA in the gauge s.
@@ -47,7 +52,7 @@ impl Tangent {
         let rate: Vec<f64> = rates.map(|rate| stiffness * rate).collect();
         let displacement =
             level.in_gauge(|level| Ok(level.operator.apply_field(&rate)?.to_vec()))?;
-        Ok(Self { rate, displacement })
+        Ok(Self { rate, displacement, drift: 0.0 })
     }
 
     /// Becomes the tangent of `solution`, and adds stiffnesses and pressure rate to it.
@@ -67,6 +72,7 @@ impl Tangent {
         level.choose_contact(|node, _, _| solution.is_elastic(node))?;
         if level.iterate.contact.len() == 0 {
             // All that is in contact yields: the load stays what it is.
+            *self = Self::default();
             let (nx, ny) = level.grid.shape();
             solution.pressure_rate = DMatrix::zeros(nx, ny);
             solution.contact.contact_stiffness = level.gauge.is_none().then_some(0.0);
@@ -146,7 +152,11 @@ impl Tangent {
         if known.is_known() {
             contact.gather(&known.rate, &mut y);
             if !lost {
-                base = Field { pressure: known.rate, displacement: known.displacement, drift: 0.0 };
+                base = Field {
+                    pressure: known.rate,
+                    displacement: known.displacement,
+                    drift: known.drift,
+                };
             }
         } else {
             let ones = vec![1.0; contact.len()];
@@ -174,8 +184,8 @@ impl Tangent {
         };
         // With the residual r, eᵀ C⁻¹ e = eᵀ y + yᵀ r up to the square of the error.
         let unit_unit = sum_over(nodes.len(), left);
-        self.rate = solved.pressure;
-        self.displacement = solved.displacement;
+        let Field { pressure, displacement, drift } = solved;
+        *self = Self { rate: pressure, displacement, drift };
         Ok(Solved { iterations, unit_unit })
     }
 }

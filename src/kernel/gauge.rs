@@ -7,9 +7,9 @@
 //!
 //! Two rules choose a gauge, because two different things are known where one is chosen:
 //!
-//! * [`of_half_space`], for the half-spaces of this crate as they are made. Their symbol tells the
-//!   least gauge in which the matrix is an inverse M-matrix, and the promise that gaps are convex
-//!   holds from there on only.
+//! * [`least`], for the half-spaces of this crate as they are made ([`of_half_space`]), and for symbols. They tell
+//!   the least gauge in which the matrix is an inverse M-matrix, and the promise that gaps are convex holds from there
+//!   on only.
 //! * [`of_coefficients`], for any table of coefficients, also a coarsened one or one of another body. It
 //!   knows neither modulus nor symbol, promises nothing, and only has to keep a matrix well
 //!   conditioned that would be singular in the zero gauge.
@@ -64,7 +64,7 @@ impl Gauge {
 /// Gauge of a half-space over the least one in which its matrix is an inverse M-matrix: near enough
 /// for windows of events to be long, and far enough for the rounding of the least one, which is a
 /// difference of numbers up to N³ times as large.
-const ABOVE_LEAST: f64 = 1.02;
+pub(super) const ABOVE_LEAST: f64 = 1.02;
 
 /// The gauge in which a half-space is made, in units of D / E*, where D is the long side of a cell
 /// and `grid` has lengths in units of D.
@@ -79,6 +79,18 @@ pub(super) fn of_half_space(grid: &Grid, least: Option<f64>) -> f64 {
             0.8 * lx.max(ly) / grid.nodes() as f64
         }
     }
+}
+
+/// The least gauge s* of an inverse M-matrix, from the coefficients of the pseudo-inverse of its matrix on one period,
+/// the first of which is that of a node on itself.
+///
+/// In the gauge s the inverse is A + 1 / (s M²) everywhere, of M nodes. Its elements off the diagonal are not positive
+/// if all those of A are negative and $`s \ge s^* = 1 / (M^2 \min_{\mathbf r \ne 0} (-A(\mathbf r)))`$; its row sums are
+/// 1 / (s M). With a single node nothing is off the diagonal, and any gauge will do: zero.
+pub(super) fn least(nodes: usize, inverse: &[f64]) -> Option<f64> {
+    let greatest = inverse[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let nodes = nodes as f64;
+    (greatest < 0.0).then(|| 1.0 / (nodes * nodes * -greatest))
 }
 
 /// A gauge for any coefficients, given their mean and the least of them \[m/Pa\].

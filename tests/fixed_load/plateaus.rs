@@ -176,3 +176,33 @@ fn sweeps_pass_plateaus() {
         }
     }
 }
+
+/// From a state on one plateau to mean gaps off it, up and down, in one sweep.
+#[test]
+fn sweeps_leave_plateaus_for_other_mean_gaps() {
+    let surface = small();
+    let grid = Grid::square(16, 1e-3).unwrap();
+    for kernel in kernels(grid) {
+        let history = path(&surface, &*kernel, 8e6);
+        let length = history.states().last().unwrap().contact.approach;
+        let all = plateaus(&history);
+        let middle = |[near, far]: &[ContactState; 2]| 0.5 * (near.mean_gap + far.mean_gap);
+        let [first, last] = [middle(all.first().unwrap()), middle(all.last().unwrap())];
+        let between = history.states()[history.states().len() / 2].contact.mean_gap;
+        let gaps = [first, between, last, between, first];
+        let builder = FixedLoadSolver::builder(&surface, &*kernel).hardness(8e6);
+        let mut solver = builder.tolerance(1e-11).build().unwrap();
+        for gap in gaps {
+            let expected = history.at_mean_gap(gap).unwrap().contact;
+            let found = solver.solve_target(ContactTarget::MeanGap(gap)).unwrap().contact;
+            assert!((found.load / expected.load - 1.0).abs() < 1e-8, "{gap}");
+        }
+        let targets = gaps.map(ContactTarget::MeanGap);
+        for (solution, gap) in solver.sweep(targets).zip(gaps) {
+            let found = solution.unwrap_or_else(|error| panic!("{gap}: {error}")).contact;
+            assert!((found.mean_gap - gap).abs() < 1e-10 * length, "{gap}");
+            let expected = history.at_mean_gap(gap).unwrap().contact;
+            assert!((found.load / expected.load - 1.0).abs() < 1e-8, "{gap}");
+        }
+    }
+}

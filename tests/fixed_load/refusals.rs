@@ -1,5 +1,7 @@
 //! Input that is refused, with an error that says why.
 
+use nalgebra::DMatrix;
+
 use asperity::surface::FlatPunch;
 use asperity::{
     Boundary, Boussinesq, Error, FixedLoadSolution, FixedLoadSolver, Grid, InfluenceKernel,
@@ -72,6 +74,10 @@ fn too_few_iterations_for_stiffnesses() {
         assert_eq!(solution.contact.interfacial_stiffness, None);
         assert_eq!(solution.pressure_rate, before.pressure_rate);
         let mut patient = solver(&map, &kernel, 1e-8);
+        // Fields are public.
+        let mut other = solution.clone();
+        other.fields.yielded_map = DMatrix::from_element(1, 8, false);
+        assert!(matches!(patient.add_stiffness(&mut other), Err(Error::GridMismatch { .. })));
         patient.add_stiffness(&mut solution).unwrap();
         assert!(solution.contact.interfacial_stiffness.unwrap() > 0.0);
     }

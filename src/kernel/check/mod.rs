@@ -21,7 +21,7 @@ pub struct KernelReport {
     /// Whether every contact set there is on the grid was tried.
     pub exhaustive: bool,
     /// The least value of the symbol \[m/Pa\] on the waves of the grid, that is the least eigenvalue
-    /// of the influence matrix on the whole grid; `None` if the boundary is free. The wave of length
+    /// of the influence matrix on the whole grid; `None` unless both directions repeat. The wave of length
     /// zero is left out if the mean displacement is arbitrary.
     pub least_symbol: Option<f64>,
     /// The growth that the kernel promises.

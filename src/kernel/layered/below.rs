@@ -194,7 +194,7 @@ impl Field {
             // Each wave number is asked for at many distances.
             let response = Radial::of(|q| of(below.in_plane(q)), first, end, widest);
             let g = |q: f64| q * response.at(q);
-            let spectrum = Spectrum { g, bessel, first, widest, settled: 0.0, end };
+            let spectrum = Spectrum { g, bessel, first, widest, settled: 0.0, fading: widest, end };
             Radial::new(&spectrum, below.scale, reach, f64::INFINITY)
         };
         Self {

@@ -113,6 +113,7 @@ pub(super) fn spectrum<G: Fn(f64) -> f64>(body: &LayeredBody, g: G) -> Spectrum<
         first: first_variation(body),
         widest: 1.0 / top,
         settled: 0.0,
+        fading: 1.0 / top,
         end: DEEPEST / top,
     }
 }

@@ -13,7 +13,7 @@ mod radial;
 pub(crate) use below::Below;
 pub use body::{Base, Layer, LayeredBody};
 
-use super::gauge::of_coefficients;
+use super::gauge::{ABOVE_LEAST, of_coefficients};
 use super::periodic::{Even, least_gauge};
 use super::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid};
@@ -170,10 +170,11 @@ impl Layered {
             MeanDisplacement::Arbitrary => {
                 let least = values.values().iter().copied().fold(f64::INFINITY, f64::min);
                 let least_gauge = if is_convex { least_gauge(&grid, symbol) } else { None };
-                // A single node has nothing but its gauge.
+                // A single node has nothing but its gauge: any will do.
+                let least_gauge = least_gauge.filter(|least| *least > 0.0);
                 let own = grid.cell_area().sqrt() / body.surface_modulus();
                 let good = of_coefficients(0.0, least);
-                least_gauge.map_or(if good > 0.0 { good } else { own }, |least| 1.02 * least)
+                least_gauge.map_or(if good > 0.0 { good } else { own }, |least| ABOVE_LEAST * least)
             }
         };
         let growth = if is_convex {

@@ -20,8 +20,10 @@ pub(super) struct Spectrum<G> {
     pub(super) first: f64,
     /// or over this, if that is less.
     pub(super) widest: f64,
-    /// From here on it does nothing but fade.
+    /// From here on it does nothing but fade,
     pub(super) settled: f64,
+    /// over this.
+    pub(super) fading: f64,
     /// Nothing is left from here on.
     pub(super) end: f64,
 }
@@ -74,7 +76,8 @@ impl<G: Fn(f64) -> f64> Spectrum<G> {
     fn integral(&self, from: f64, to: f64, r: f64) -> f64 {
         let (mut sum, mut a) = (0.0, from);
         while a < to {
-            let step = a.max(self.first).min(self.widest);
+            let widest = if a < self.settled { self.widest } else { self.fading };
+            let step = a.max(self.first).min(widest);
             let b = if a + 1.2 * step < to { a + step } else { to };
             let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
             for (node, weight) in FOURTEEN {
@@ -215,6 +218,7 @@ mod tests {
                 first: 0.1 / c.max(1.0),
                 widest: 2.0 / c,
                 settled: 0.0,
+                fading: 2.0 / c,
                 end: 45.0 / c,
             };
             let exact = |r: f64| {

@@ -424,3 +424,29 @@ fn promises_are_those_of_the_body() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// The thinner a coat, the less of it is left, in proportion; its cost does not grow. On one node any gauge will do.
+#[test]
+fn very_thin_coats_and_single_nodes() -> Result<(), Error> {
+    let grid = Grid::new(6, 5, 1.0, 1.0)?;
+    let steel = half_space(1.0, 0.3);
+    let bare = PeriodicBoussinesq::new(grid, 1.0 / (1.0 - 0.09))?.with_gauge(0.0)?;
+    for young in [0.1, 10.0] {
+        let of_coat = |h: f64| -> Result<f64, Error> {
+            let body = LayeredBody::new(&[layer(young, 0.2, h)], steel)?;
+            let values = periodic::cells(&grid, &body, 0.0)?.inverse_transform();
+            Ok(values.at(0, 0) - bare.coefficient(0, 0))
+        };
+        let [thick, thin, least] = [of_coat(2e-4)?, of_coat(1e-4)?, of_coat(1e-6)?];
+        // The next order, h² ln h, is 10⁻³ of the first; what is left of 10⁻⁶ has ten digits.
+        assert!((thick / thin - 2.0).abs() < 1e-2, "{young}: {thick:e} {thin:e}");
+        assert!((thin / least / 100.0 - 1.0).abs() < 1e-2, "{young}: {thin:e} {least:e}");
+    }
+    let single = Grid::new(1, 1, 2.0, 1.0)?;
+    for body in bodies(0.4)? {
+        for made in [Layered::periodic, Layered::spectral] {
+            assert!(KernelTable::new(&made(single, body.clone())?)?.self_influence() > 0.0);
+        }
+    }
+    Ok(())
+}

@@ -2,6 +2,7 @@
 //! in.
 
 use super::even::Even;
+use crate::kernel::gauge::least;
 use crate::{Error, Grid};
 
 /// A periodic kernel whose symbol is even along x and along y.
@@ -114,17 +115,9 @@ macro_rules! half_space {
 pub(super) use half_space;
 
 /// The least gauge s* in which the kernel's matrix is an inverse M-matrix, if there is any.
-///
-/// With A the pseudo-inverse of the matrix of `symbol`, $`C_s^{-1} = A + 1 / (s M^2)`$ everywhere.
-/// Its elements off the diagonal are not positive if all those of A are negative and
-/// $`s \ge s^* = 1 / (M^2 \min_{\mathbf r \ne 0} (-A(\mathbf r)))`$; its row sums are 1 / (s M).
 pub(in crate::kernel) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
     let inverse = symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value });
-    let inverse = inverse.inverse_transform();
-    let greatest = inverse.values()[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // With a single node nothing is off the diagonal: minus infinity, and any gauge will do.
-    let nodes = grid.nodes() as f64;
-    (greatest < 0.0).then(|| 1.0 / (nodes * nodes * -greatest))
+    least(grid.nodes(), inverse.inverse_transform().values())
 }
 
 /// The grid with lengths in units of the long side of its cells.

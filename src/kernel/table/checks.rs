@@ -50,10 +50,11 @@ impl KernelTable {
 
     /// Whether two coefficients that ought to be the same are.
     fn agree(&self, value: f64, other: f64) -> bool {
-        // Twice a few ulps: a formula may be evaluated in another order for another offset.
+        // A formula may be evaluated in another order for another offset, and an inverse Fourier transform rounds
+        // all coefficients as the greatest.
         const TOLERANCE: f64 = 1e-14;
         let scale = self.self_influence().abs();
-        (value - other).abs() <= TOLERANCE * value.abs().max(other.abs()).max(scale * 1e-2)
+        (value - other).abs() <= TOLERANCE * value.abs().max(other.abs()).max(scale)
     }
 
     /// The offset at a place of the table.

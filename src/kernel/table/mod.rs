@@ -5,8 +5,9 @@ mod coarse;
 mod symbol;
 
 pub(crate) use coarse::Blocks;
+use symbol::Symbol;
 
-use super::gauge::of_coefficients;
+use super::gauge::{ABOVE_LEAST, of_coefficients};
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid, KernelError};
 
@@ -184,16 +185,20 @@ impl KernelTable {
         growth: ContactGrowth,
         symbol: impl FnMut(f64, f64) -> f64,
     ) -> Result<Self, Error> {
-        let (period, mean) = symbol::coefficients(&grid, mean, symbol)?;
+        let symbol = Symbol::new(&grid, mean, symbol)?;
+        let period = symbol.coefficients();
         let (nx, ny) = (grid.nx() as isize, grid.ny() as isize);
         let table = Self::from_fn(grid, Boundary::Periodic, growth, |di, dj| {
             period[(di.rem_euclid(nx) + nx * dj.rem_euclid(ny)) as usize]
         })?
-        .with_mean_displacement(mean);
-        Ok(match table.computing_gauge() {
-            Some(gauge) => table.in_gauge(gauge),
-            None => table,
-        })
+        .with_mean_displacement(symbol.mean);
+        let Some(gauge) = table.computing_gauge() else {
+            return Ok(table);
+        };
+        // The promise holds from the least gauge on.
+        let is_convex = growth == ContactGrowth::Convex;
+        let least = if is_convex { symbol.least_gauge() } else { None };
+        Ok(table.in_gauge(least.map_or(gauge, |least| ABOVE_LEAST * least)))
     }
 
     /// The same coefficients, with the mean displacement of a periodic body taken as said.

@@ -4,27 +4,52 @@ use asperity_fft::Plan;
 use num_complex::Complex64;
 
 use crate::kernel::MeanDisplacement;
+use crate::kernel::gauge::least;
 use crate::{Error, Grid, KernelError};
 
 /// Relative difference within which Ĉ(q) and Ĉ(−q) count as the same: a formula whose terms are
 /// evaluated in another order, or with functions that are good to some ten digits.
 const SAME: f64 = 1e-10;
 
-/// The coefficients C(r) \[m/Pa\] of one period, x fastest, from the symbol Ĉ(q) \[m/Pa\]; and how the mean
-/// displacement is to be taken: one that is zero, of an incompressible layer, like one that is arbitrary.
-///
-/// # Errors
-///
-/// As [`KernelTable::from_symbol`](super::KernelTable::from_symbol).
-pub(super) fn coefficients(
-    grid: &Grid,
-    mean: MeanDisplacement,
-    symbol: impl FnMut(f64, f64) -> f64,
-) -> Result<(Vec<f64>, MeanDisplacement), Error> {
-    let (nx, ny) = grid.shape();
-    let values = on_the_waves(grid, mean, symbol)?;
-    let mean = if values[0] == 0.0 { MeanDisplacement::Arbitrary } else { mean };
-    let mut waves: Vec<_> = values.into_iter().map(Complex64::from).collect();
+/// A symbol Ĉ(q) \[m/Pa\] on the waves of a grid.
+pub(super) struct Symbol {
+    shape: (usize, usize),
+    values: Vec<f64>,
+    /// How the mean displacement is to be taken: one that is zero, of an incompressible layer, like one that is
+    /// arbitrary.
+    pub(super) mean: MeanDisplacement,
+}
+
+impl Symbol {
+    /// # Errors
+    ///
+    /// As [`KernelTable::from_symbol`](super::KernelTable::from_symbol).
+    pub(super) fn new(
+        grid: &Grid,
+        mean: MeanDisplacement,
+        symbol: impl FnMut(f64, f64) -> f64,
+    ) -> Result<Self, Error> {
+        let values = on_the_waves(grid, mean, symbol)?;
+        let mean = if values[0] == 0.0 { MeanDisplacement::Arbitrary } else { mean };
+        Ok(Self { shape: grid.shape(), values, mean })
+    }
+
+    /// The coefficients C(r) \[m/Pa\] of one period, x fastest.
+    pub(super) fn coefficients(&self) -> Vec<f64> {
+        transformed(self.shape, &self.values)
+    }
+
+    /// The least gauge in which the matrix is an inverse M-matrix, if there is one: see [`least`].
+    pub(super) fn least_gauge(&self) -> Option<f64> {
+        let reciprocal = |value: &f64| if *value == 0.0 { 0.0 } else { 1.0 / value };
+        let inverse: Vec<f64> = self.values.iter().map(reciprocal).collect();
+        least(inverse.len(), &transformed(self.shape, &inverse)).filter(|least| *least > 0.0)
+    }
+}
+
+/// The inverse Fourier transform of what is even, x fastest.
+fn transformed((nx, ny): (usize, usize), values: &[f64]) -> Vec<f64> {
+    let mut waves: Vec<_> = values.iter().copied().map(Complex64::from).collect();
     f64::complex_inverse(nx).process(&mut waves);
     let along_y = f64::complex_inverse(ny);
     let mut column = vec![Complex64::ZERO; ny];
@@ -44,7 +69,7 @@ pub(super) fn coefficients(
         let opposite = (nx - ix) % nx + nx * ((ny - iy) % ny);
         0.5 * (result[place] + result[opposite])
     };
-    Ok(((0..nx * ny).map(half).collect(), mean))
+    (0..nx * ny).map(half).collect()
 }
 
 /// The symbol at all waves of the grid, in the order of a Fourier transform, even under q → −q.

@@ -260,3 +260,45 @@ fn what_does_not_repeat_is_refused() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// A promise of convex gaps holds from a least gauge on. The symbol is one over the square root of the discrete
+/// Laplacian, whose inverse has no element off the diagonal that is not negative.
+#[test]
+fn a_convex_promise_holds_in_the_gauge_of_its_table() -> Result<(), Error> {
+    for (nx, ny) in [(8, 8), (9, 6), (24, 3)] {
+        let grid = Grid::new(nx, ny, 1.0, 1.0)?;
+        let symbol = |qx: f64, qy: f64| (4.0 - 2.0 * qx.cos() - 2.0 * qy.cos()).sqrt().recip();
+        let mean = MeanDisplacement::Arbitrary;
+        let table = KernelTable::from_symbol(grid, mean, ContactGrowth::Convex, symbol)?;
+        let greatest = |table: &KernelTable| {
+            let nodes: Vec<_> =
+                (0..ny as isize).flat_map(|y| (0..nx as isize).map(move |x| (x, y))).collect();
+            let matrix = nalgebra::DMatrix::from_fn(nodes.len(), nodes.len(), |i, j| {
+                let (a, b) = (nodes[i], nodes[j]);
+                table.coefficient(a.0 - b.0, a.1 - b.1).unwrap_or(f64::NAN)
+            });
+            let inverse = matrix.try_inverse().unwrap_or_default();
+            (1..nodes.len()).map(|j| inverse[(0, j)]).fold(f64::NEG_INFINITY, f64::max)
+        };
+        assert!(greatest(&table) < 0.0, "{nx} x {ny}");
+        // 2 % above the least, where the greatest is none to rounding.
+        let least = table.in_gauge(table.gauge().unwrap_or_default() / 1.02);
+        assert!(greatest(&least).abs() < 1e-13, "{nx} x {ny}: {:e}", greatest(&least));
+    }
+    Ok(())
+}
+
+/// An inverse Fourier transform rounds small coefficients as it does the greatest.
+#[test]
+fn coefficients_may_be_off_by_rounding_of_the_greatest() -> Result<(), Error> {
+    let grid = Grid::new(5, 4, 1.0, 1.0)?;
+    let make = |error: f64| {
+        KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, move |di, dj| {
+            let value = 1e-3 / (1.0 + (di * di + dj * dj) as f64);
+            if (di, dj) == (0, 0) { 1.0 } else { value + if di > 0 { error } else { 0.0 } }
+        })
+    };
+    assert!(make(1e-15).is_ok());
+    assert!(matches!(make(1e-13), Err(Error::Kernel(KernelError::NotSymmetric { .. }))));
+    Ok(())
+}
