@@ -412,6 +412,9 @@ fn of_adhesion(error: &AdhesionError) -> Described {
 fn of_surface(error: &SurfaceError) -> Described {
     match error {
         SurfaceError::EmptyGrid { nx, ny } => (VALUE, "EmptyGrid", numbers![nx, ny]),
+        SurfaceError::CellMismatch { expected, found } => {
+            (VALUE, "CellMismatch", numbers![expected, found])
+        }
         SurfaceError::GridTooLarge { nx, ny, max_side } => {
             (VALUE, "GridTooLarge", numbers![nx, ny, max_side])
         }

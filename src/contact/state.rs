@@ -29,6 +29,8 @@ pub struct ContactState {
     pub contact_area: f64,
     /// Contact area over nominal area, between 0 and 1.
     pub contact_area_fraction: f64,
+    /// Nominal area \[m²\].
+    pub nominal_area: f64,
     /// Gap averaged over the nominal area \[m\].
     pub mean_gap: f64,
     /// Normal contact stiffness `K = dW/dδ` \[N/m\], δ being the approach of a distant point of the
@@ -82,6 +84,7 @@ impl ContactState {
             load,
             contact_area: contact_nodes as f64 * grid.cell_area(),
             contact_area_fraction: contact_nodes as f64 / grid.nodes() as f64,
+            nominal_area: grid.nominal_area(),
             mean_gap,
             contact_stiffness: None,
             interfacial_stiffness: None,
@@ -93,7 +96,7 @@ impl ContactState {
     /// Load over nominal area \[Pa\].
     #[must_use]
     pub fn mean_pressure(&self) -> f64 {
-        self.load * self.contact_area_fraction / self.contact_area
+        self.load / self.nominal_area
     }
 
     /// Whether all quantities are finite; in full contact the interfacial stiffness need not be.
@@ -111,6 +114,7 @@ impl ContactState {
             ("load", self.load),
             ("contact area", self.contact_area),
             ("contact area fraction", self.contact_area_fraction),
+            ("nominal area", self.nominal_area),
             ("mean gap", self.mean_gap),
             ("elastic energy", self.energy),
             ("plastic volume", plastic.volume),
@@ -161,8 +165,7 @@ impl ContactState {
         self.contact_stiffness.or_else(|| match (self.interfacial_stiffness, yielding) {
             // Mean planes approach by what the mean gap closes and by what yields.
             (Some(stiffness), Some(plastic)) => {
-                let area = self.contact_area / self.contact_area_fraction;
-                Some(1.0 / (1.0 / stiffness + plastic.volume_per_load / area))
+                Some(1.0 / (1.0 / stiffness + plastic.volume_per_load / self.nominal_area))
             }
             (stiffness, _) => stiffness,
         })
@@ -270,6 +273,9 @@ mod tests {
         assert_eq!(state.contact_area, 2.0);
         assert_eq!(state.contact_area_fraction, 0.4);
         assert_eq!(state.mean_pressure(), 2.0);
+        // Pulled, with nothing in contact.
+        let apart = ContactState::new(&Grid::new(4, 5, 0.5, 0.5)?, 0, -3.0, -10.0, 7.0);
+        assert_eq!(apart.mean_pressure(), -2.0);
         Ok(())
     }
 

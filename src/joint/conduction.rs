@@ -173,7 +173,7 @@ impl Conduction {
         let open = 1.0 - contact.contact_area_fraction;
         match self.gap {
             Some((conductivity, jump)) if open > 0.0 => {
-                let area = open * contact.contact_area / contact.contact_area_fraction;
+                let area = open * contact.nominal_area;
                 conductivity * area / ((contact.mean_gap / open).max(0.0) + jump)
             }
             _ => 0.0,

@@ -171,7 +171,7 @@ impl<'a> InterfaceTableBuilder<'a> {
         if !contact.interfacial_stiffness.is_some_and(f64::is_finite) {
             return Ok(None);
         }
-        let area = contact.contact_area / contact.contact_area_fraction;
+        let area = contact.nominal_area;
         let pressure = contact.mean_pressure();
         let conductance = match &self.conduction {
             Some(conduction) => {

@@ -164,8 +164,7 @@ impl History {
             ContactTarget::Load(load) => ("load of a state", load, self.at_load(load)),
             ContactTarget::MeanPressure(mean_pressure) => {
                 let last = self.states.last().map(|state| state.contact);
-                let area = |last: ContactState| last.contact_area / last.contact_area_fraction;
-                let load = last.map(|last| mean_pressure * area(last));
+                let load = last.map(|last| mean_pressure * last.nominal_area);
                 let state = load.and_then(|load| self.at_load(load));
                 ("mean pressure of a state", mean_pressure, state)
             }
@@ -337,6 +336,7 @@ mod tests {
                 load,
                 contact_area: load,
                 contact_area_fraction: load / 10.0,
+                nominal_area: 10.0,
                 mean_gap: 2.0 - 0.25 * load,
                 contact_stiffness: Some(2.0),
                 interfacial_stiffness: Some(4.0),

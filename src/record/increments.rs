@@ -144,7 +144,7 @@ fn increments(before: &LoadingState, state: &LoadingState, length: f64) -> Resul
     // Lengths: what is estimated, what rounding takes from the approach, and what it takes from the load.
     let off = before.approach_error + state.approach_error + ROUNDING * length;
     let off = off + over(start.interfacial_stiffness) + over(start.contact_stiffness);
-    let area = end.contact_area / end.contact_area_fraction;
+    let area = end.nominal_area;
     let [plastic, before] = [end.plastic, predicted.plastic].map(Option::unwrap_or_default);
     for (quantity, value, expected, tolerance) in [
         ("approach", end.approach, predicted.approach, off),

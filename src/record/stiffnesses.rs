@@ -144,7 +144,7 @@ impl HalfSpace {
 
 /// What of the approach goes into yielded nodes, as a mean over the surface \[m/N\].
 fn lost(contact: &ContactState) -> f64 {
-    let area = contact.contact_area / contact.contact_area_fraction;
+    let area = contact.nominal_area;
     contact.plastic.map_or(0.0, |plastic| plastic.volume_per_load / area)
 }
 

@@ -73,13 +73,19 @@ pub fn counted(count: impl Display, of_one: &str) -> String {
     format!("{count} {of_one}{ending}")
 }
 
+/// A power of ten, rounded once; subnormal ones as well, and the least number for what is below them.
+fn ten_to(power: i32) -> f64 {
+    let parsed: f64 = format!("1e{power}").parse().unwrap_or(f64::NAN);
+    parsed.max(f64::from_bits(1))
+}
+
 /// A number for a command line with so many significant digits, not below the value: what must be enough is rounded up.
 pub fn at_least(value: f64, digits: usize) -> String {
     let text = format!("{value:.*e}", digits.saturating_sub(1));
     match text.parse::<f64>() {
         Ok(rounded) if rounded < value => {
             // A unit in the last place more; its own rounding is far below that.
-            let unit = 10_f64.powi(value.abs().log10().floor() as i32 + 1 - digits as i32);
+            let unit = ten_to(value.abs().log10().floor() as i32 + 1 - digits as i32);
             format!("{:.*e}", digits.saturating_sub(1), rounded + unit)
         }
         _ => text,
@@ -160,7 +166,7 @@ fn prefix(value: f64) -> Option<(f64, &'static str)> {
     }
     let thousands = thousands(value)?;
     let place = usize::try_from(thousands + 5).ok()?;
-    Some((10_f64.powi(3 * thousands), PREFIXES.get(place)?))
+    Some((ten_to(3 * thousands), PREFIXES.get(place)?))
 }
 
 /// How many times a number has the factor 1000, `None` if it has no end.
@@ -178,7 +184,7 @@ pub fn prefixed(unit: &str, greatest: f64) -> (f64, String) {
     match thousands(greatest) {
         Some(thousands) => {
             let power = power_of_ten(3 * thousands);
-            (10_f64.powi(3 * thousands), format!("{power} {unit}"))
+            (ten_to(3 * thousands), format!("{power} {unit}"))
         }
         None => (1.0, unit.to_string()),
     }
@@ -238,7 +244,7 @@ mod tests {
             for digits in 1..8 {
                 let told = at_least(value, digits);
                 let told: f64 = told.parse().unwrap_or(f64::NAN);
-                let unit = 10_f64.powi(1 - digits as i32);
+                let unit = ten_to(1 - digits as i32);
                 assert!(told >= value && told <= value * (1.0 + unit), "{value} {told}");
             }
             value *= 1.037;

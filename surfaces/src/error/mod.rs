@@ -147,6 +147,18 @@ pub enum Error {
         found: (usize, usize),
     },
 
+    /// Two grids with as many nodes have different cells.
+    #[error(
+        "expected cells of {} m x {} m, but found {} m x {} m",
+        expected.0, expected.1, found.0, found.1
+    )]
+    CellMismatch {
+        /// Cell sides along x and y that were expected \[m\].
+        expected: (f64, f64),
+        /// Cell sides along x and y that were found \[m\].
+        found: (f64, f64),
+    },
+
     /// A fraction of the nominal area is smaller than a node.
     #[error("an area fraction of {fraction} is less than one node, which is {least}")]
     LessThanOneNode {

@@ -35,7 +35,7 @@ impl HeightMap {
     ///
     /// [`Error::EmptyGrid`] without any height, and [`Error::HeightNotFinite`], which counts the
     /// heights that are NaN or infinite and names the first of them: missing data of a measurement
-    /// must be filled first, by [`fill_missing`](super::fill_missing).
+    /// must be filled first, by [`fill_missing`](super::fill_missing). [`Error::NothingMeasured`] if all are NaN.
     pub fn new(heights: DMatrix<f64>) -> Result<Self, Error> {
         let (nx, ny) = heights.shape();
         if nx == 0 || ny == 0 {
@@ -93,6 +93,10 @@ impl HeightMap {
     /// Mean height `h̄` \[m\].
     #[must_use]
     pub fn mean_height(&self) -> f64 {
+        if self.peak_to_valley() == 0.0 {
+            // Exactly, so that nothing is left of a flat map without it.
+            return self.max_height();
+        }
         let unit = self.unit();
         unit * self.mean(|z| z / unit)
     }
@@ -184,12 +188,8 @@ impl HeightMap {
         (along_x, along_y)
     }
 
-    /// Mean of a power of the heights about their mean, over their rms height; NaN if all are equal, of which the mean
-    /// may round.
+    /// Mean of a power of the heights about their mean, over their rms height; NaN if all are equal.
     fn standardised(&self, power: i32) -> f64 {
-        if self.peak_to_valley() == 0.0 {
-            return f64::NAN;
-        }
         let (mean, rms) = (self.mean_height(), self.rms_height());
         self.mean(|z| ((z - mean) / rms).powi(power))
     }

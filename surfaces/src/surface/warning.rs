@@ -67,8 +67,7 @@ impl Warning {
             warnings.push(Self::Steep { rms_gradient });
         }
         let rms_height = surface.map().rms_height();
-        // A mean may round: all heights are the same where they do not differ.
-        if rms_height < SMOOTH && surface.map().peak_to_valley() > 0.0 {
+        if rms_height < SMOOTH && rms_height > 0.0 {
             warnings.push(Self::Smooth { rms_height });
         }
         if let Some(share) = short_waves(surface).filter(|share| *share > UNRESOLVED) {
@@ -97,7 +96,9 @@ impl Warning {
 fn short_waves(surface: &Topography) -> Option<f64> {
     let grid = surface.grid();
     let (nx, ny) = grid.shape();
-    if nx.min(ny) < *MIDDLE.start() {
+    // A profile has waves along one direction.
+    let is_few = |n: usize| n > 1 && n < *MIDDLE.start();
+    if is_few(nx) || is_few(ny) || nx.max(ny) == 1 {
         return None;
     }
     let middle = |n: usize| {
@@ -279,6 +280,20 @@ mod tests {
         assert!(is_half, "{found:?}");
         assert!(found[0].to_string().contains("% of the mean square gradient"));
         assert_eq!(warnings(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?, []);
+        Ok(())
+    }
+
+    /// Profiles as well.
+    #[test]
+    fn profiles_that_are_not_resolved() -> Result<(), Error> {
+        for (length, resolved) in [(30.0, true), (3.0, false)] {
+            let wave = |k: usize| 1e-8 * (std::f64::consts::TAU * k as f64 / length).sin();
+            for (nx, ny) in [(5000, 1), (1, 300)] {
+                let heights = DMatrix::from_fn(nx, ny, |ix, iy| wave(ix + iy));
+                let map = Topography::new(Grid::new(nx, ny, 1e-6, 1e-6)?, heights)?;
+                assert_eq!(Warning::of_surface(&map).is_empty(), resolved, "{length}");
+            }
+        }
         Ok(())
     }
 

@@ -67,12 +67,15 @@ use crate::{Error, Grid, Surface};
 /// A test pins the bits; what could still change them is a change of the last bits of `libm`.
 ///
 /// * The wave with wave numbers (m, n), q = 2π (m/Lx, n/Ly), is given a phase if m > 0, or m = 0
-///   and n > 0; its conjugate (−m, −n) has the opposite phase.
+///   and n > 0; its conjugate (−m, −n) has the opposite phase. Of the waves of two nodes along x,
+///   m = nx/2, those with n ≥ 0 alone, and along y there are none with n = −ny/2: they are the
+///   conjugates of others.
 /// * The generator is ChaCha8. Bytes 0 to 7 of its key are the seed, little-endian, the other 24
 ///   are zero; its stream number is m. The wave takes the words 2k and 2k + 1 of that stream as
 ///   the lower and upper half of an integer u, where k = 2n if n ≥ 0 and k = −2n − 1 otherwise.
 /// * The phase is 2π ⌊u/2¹¹⌋ 2⁻⁵³. A wave that is its own conjugate on the grid, which is possible
-///   only at two nodes a wavelength, has the phase 0 if that is below π, and π otherwise.
+///   only at two nodes a wavelength, has the phase 0 if that is below π, and π otherwise, at node
+///   (0, 0) and not at the corner where q·x = 0.
 ///
 /// So the phase of a wave depends on the seed and its wave numbers only. The same seed and
 /// parameters on a finer grid of the same sides give the *same surface* at more points, as long as

@@ -124,7 +124,7 @@ fn decay(map: &Topography) -> Option<[f64; 2]> {
     let mut is_in = vec![false; (2 * nx - 1) * (2 * ny - 1)];
     let mut waiting = vec![(0, 0)];
     is_in[place((0, 0))] = true;
-    let way = |i: f64, j: f64| (i * grid.dx()).hypot(j * grid.dy());
+    let way = |i: f64, j: f64| libm::hypot(i * grid.dx(), j * grid.dy());
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
     while let Some((i, j)) = waiting.pop() {
         let here = correlation.at(i, j);

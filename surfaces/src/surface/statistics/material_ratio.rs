@@ -88,7 +88,9 @@ impl MaterialRatio {
         let core = &heights[start..(start + span + 1).min(count)];
         let ratio = |k: usize| (k as f64 + 0.5) / count as f64;
         let middle = 0.5 * (ratio(start) + ratio(start + core.len() - 1));
-        let mean = core.iter().sum::<f64>() / core.len() as f64;
+        // From the first on: heights that are all the same have no other mean.
+        let above_first = core.iter().map(|height| height - core[0]).sum::<f64>();
+        let mean = core[0] + above_first / core.len() as f64;
         let (mut products, mut squares) = (0.0, 0.0);
         for (k, height) in core.iter().enumerate() {
             let way = ratio(start + k) - middle;
@@ -102,8 +104,10 @@ impl MaterialRatio {
             let sum: f64 = heights.iter().map(|height| (height - from).abs()).sum();
             if heights.is_empty() { 0.0 } else { 2.0 * sum / heights.len() as f64 }
         };
-        let peaks = heights.partition_point(|height| *height > upper);
-        let dales = heights.partition_point(|height| *height >= lower);
+        // What rounds lies on the line.
+        let slack = 4.0 * f64::EPSILON * upper.abs().max(lower.abs());
+        let peaks = heights.partition_point(|height| *height > upper + slack);
+        let dales = heights.partition_point(|height| *height >= lower - slack);
         CoreParameters {
             sk: upper - lower,
             spk: excess(&heights[..peaks], upper),
@@ -187,6 +191,14 @@ mod tests {
         let core = curve(&heights)?.core();
         assert_eq!((core.sk, core.spk, core.svk), (0.0, 0.0, 8.0));
         assert_eq!((core.smrk1, core.smrk2), (0.0, 0.9));
+        // However the height of the plateau rounds: of 3 and of 11 times 0.1 the sum is above, and below, the product.
+        for count in [5, 25] {
+            let heights: Vec<f64> = (0..count).map(|k| if k == 0 { -3.0 } else { 0.1 }).collect();
+            let core = curve(&heights)?.core();
+            assert_eq!((core.sk, core.spk, core.smrk1), (0.0, 0.0, 0.0));
+            assert!((core.svk - 6.2).abs() < 1e-14, "{core:?}");
+            assert_eq!(core.smrk2, f64::from(count - 1) / f64::from(count));
+        }
         Ok(())
     }
 

@@ -23,7 +23,7 @@ pub struct SpectralBin {
 #[non_exhaustive]
 pub enum RadialBins {
     /// Rings of equal width: $`(k - \frac12) \Delta q < |\mathbf q| \le (k + \frac12) \Delta q`$ with Δq = 2π over the
-    /// shorter side, k = 1, 2, …
+    /// shorter side, k = 1, 2, … Waves longer than twice the shorter side, which oblong maps have, lie in none.
     Linear,
     /// Rings of equal width on a logarithmic scale, so many in a decade, from 2π over the longer side on: the first
     /// begins, and the last ends, a hundredth of a decade beyond the wavevectors. The bins of SurfaceTopography, for

@@ -58,6 +58,9 @@ impl Topography {
     /// # }
     /// ```
     ///
+    /// Heights are taken from the mean of the part that is evaluated; that is what waves longer than the cut-off leave
+    /// in it.
+    ///
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a surface of several rows, and for a cut-off of more than half the profile;
@@ -71,14 +74,11 @@ impl Topography {
             None => (levelled, nx),
             Some(cutoff) => {
                 Error::require_positive("cut-off wavelength", cutoff)?;
-                let nodes = (cutoff / step).round();
-                let fits = 2.0 * nodes <= nx as f64 && nodes >= 1.0;
-                Error::require(
-                    "cut-off wavelength in steps",
-                    cutoff / step,
-                    fits,
-                    "at least 1, and at most half the profile",
-                )?;
+                let steps = cutoff / step;
+                let fits = 2.0 * steps <= nx as f64 * (1.0 + SLACK) && steps >= 1.0 - SLACK;
+                let expected = "at least 1, and at most half the profile";
+                Error::require("cut-off wavelength in steps", steps, fits, expected)?;
+                let nodes = steps.round();
                 let (nodes, ends) = (nodes as usize, (0.5 * nodes) as usize);
                 let roughness = levelled.high_pass(cutoff, Filter::Gaussian)?;
                 (roughness.crop(ends..nx - ends, 0..1)?, nodes)
@@ -104,6 +104,9 @@ impl Topography {
     }
 }
 
+/// Relative slack of the bounds of a cut-off, for rounding.
+const SLACK: f64 = 1e-12;
+
 /// From the lowest to the highest.
 fn extent(heights: &[f64]) -> f64 {
     let Range { start, end } =
@@ -118,7 +121,8 @@ fn extent(heights: &[f64]) -> f64 {
 fn mean_spacing(heights: &[f64], counted: f64) -> Option<f64> {
     let mut rises: Vec<f64> = Vec::new();
     // Where it last rose through the mean line after a dale.
-    let (mut was_low, mut rose) = (false, None);
+    let mut was_low = heights.first().is_some_and(|height| *height < -counted);
+    let mut rose = None;
     for (k, pair) in heights.windows(2).enumerate() {
         let &[before, after] = pair else { continue };
         if after < -counted {

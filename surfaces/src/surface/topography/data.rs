@@ -77,7 +77,20 @@ impl Topography {
 
 /// The surface itself, on its own grid and no other.
 impl Surface for Topography {
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] and [`Error::CellMismatch`] on another grid.
     fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.map.heights(grid)
+        let heights = self.map.heights(grid)?;
+        let cells = |grid: &Grid| (grid.dx(), grid.dy());
+        let (expected, found) = (cells(&self.grid), cells(grid));
+        let is_same = |a: f64, b: f64| (a - b).abs() <= SAME_CELL * a;
+        if is_same(expected.0, found.0) && is_same(expected.1, found.1) {
+            return Ok(heights);
+        }
+        Err(Error::CellMismatch { expected, found })
     }
 }
+
+/// Cells that differ by no more than this are one: sides are written with some nine digits.
+const SAME_CELL: f64 = 1e-9;

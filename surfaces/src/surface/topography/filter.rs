@@ -80,8 +80,8 @@ fn sharp(heights: &DMatrix<f64>, mean: f64, grid: &Grid, cutoff: f64) -> DMatrix
 /// weights add up to the same convolution of a column of ones.
 fn gaussian_along_x(heights: &DMatrix<f64>, cutoff: f64) -> DMatrix<f64> {
     let nodes = heights.nrows();
-    // The cast saturates.
-    let reach = (cutoff as usize).min(nodes - 1);
+    // The cast saturates. A node at the cut-off belongs to the sum, however it is rounded.
+    let reach = ((cutoff * (1.0 + SLACK)) as usize).min(nodes - 1);
     let weight = |offset: usize| {
         let x = offset as f64 / cutoff;
         libm::exp(-PI * PI / LN_2 * x * x)

@@ -105,24 +105,27 @@ impl Topography {
     }
 
     /// The heights without their [trend](Topography::trend): above the mean, the plane or the
-    /// polynomial of least squares.
+    /// polynomial of least squares. Where no more is left than what rounds, nothing is.
     ///
     /// # Errors
     ///
     /// [`Error::HeightNotFinite`] if differences of heights overflow.
     pub fn level(&self, trend: Trend) -> Result<Self, Error> {
         let (nx, ny) = self.grid.shape();
-        // The mean of heights that are all equal may round, but nothing is left of them.
-        if self.map.peak_to_valley() == 0.0 {
-            return self.with_heights(DMatrix::zeros(nx, ny));
-        }
         let fitted = self.trend(trend);
-        self.with_heights(DMatrix::from_fn(nx, ny, |ix, iy| {
+        let mut left = DMatrix::from_fn(nx, ny, |ix, iy| {
             let (x, y) = self.grid.position(ix, iy);
             self.heights()[(ix, iy)] - fitted.at(x, y)
-        }))
+        });
+        if left.amax() <= ROUNDING * self.heights().amax() {
+            left.fill(0.0);
+        }
+        self.with_heights(left)
     }
 }
+
+/// What a trend and its subtraction may round, of the greatest height.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The first three polynomials that are orthogonal on equidistant nodes, with cells of 1 and about
 /// their centre (Gram's).

@@ -1,12 +1,11 @@
 //! The same surface on another number of nodes.
 
-use std::f64::consts::PI;
-
 use asperity_fft::Plan;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::Topography;
+use crate::surface::turns;
 use crate::{Error, Grid};
 
 /// How heights between nodes follow from those at nodes.
@@ -40,7 +39,10 @@ impl Topography {
         interpolation: Interpolation,
     ) -> Result<Self, Error> {
         let (lx, ly) = self.grid.sides();
-        let grid = Grid::with_sides(nx, ny, lx, ly)?;
+        let mut grid = Grid::with_sides(nx, ny, lx, ly)?;
+        if (nx, ny) == self.grid.shape() {
+            grid = self.grid;
+        }
         let along_x = match interpolation {
             Interpolation::Fourier => fourier_along_x,
             Interpolation::Bilinear => linear_along_x,
@@ -64,9 +66,9 @@ fn fourier_along_x(heights: &DMatrix<f64>, nodes: usize) -> DMatrix<f64> {
     let mut scratch = forward.make_scratch_vec();
     let mut inverse_scratch = inverse.make_scratch_vec();
     // Node 0 moves from half an old cell to half a new one.
-    let shift = |k: usize| PI * k as f64 * (1.0 / nodes as f64 - 1.0 / old as f64);
+    let shift = |k: usize| 0.5 * k as f64 * (1.0 / nodes as f64 - 1.0 / old as f64);
     let factors: Vec<_> =
-        (0..=old.min(nodes) / 2).map(|k| Complex64::cis(shift(k)) / old as f64).collect();
+        (0..=old.min(nodes) / 2).map(|k| turns::cis(shift(k)) / old as f64).collect();
     let mut result = DMatrix::zeros(nodes, heights.ncols());
     let columns = result.as_mut_slice().chunks_exact_mut(nodes);
     for (column, source) in columns.zip(heights.as_slice().chunks_exact(old)) {

@@ -53,6 +53,9 @@ pub struct Estimate {
 ///     0 & \text{else} \end{cases}, \qquad q = \frac{2 \pi}\lambda
 /// ```
 ///
+/// On a single row, a profile, the density falls with $`q^{-(1 + 2H)}`$ instead: that of a cut through a surface of the
+/// exponent H.
+///
 /// Made by [`Topography::fit_self_affine`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -65,7 +68,8 @@ pub struct SelfAffineFit {
     pub short_cutoff_wavelength: Option<Estimate>,
     /// Long cut-off wavelength λ_l \[m\]; `None` if the longest waves of the map have power.
     pub long_cutoff_wavelength: Option<Estimate>,
-    /// Prefactor C₀ \[m^(2 − 2H)\] in the normalisation of [`Spectrum`](crate::surface::Spectrum).
+    /// Prefactor C₀ \[m^(2 − 2H), of a profile m^(3 − 2H)\] in the normalisation of
+    /// [`Spectrum`](crate::surface::Spectrum).
     pub prefactor: f64,
     /// Mean square of the relative residuals, weighted by the number of independent waves: 1 for a surface whose
     /// amplitudes are random (Gaussian), and greater than 1 where the spectrum is not of this form. Of a surface like
@@ -90,7 +94,7 @@ impl Topography {
     ///   a thousandth of the greatest density. Their standard errors are those of a place anywhere between two rings
     ///   of waves, which are some 2 % apart for the short one. Where a window smears it, as many waves are left out
     ///   below it as it reaches above.
-    /// * ln C = a − 2(1 + H) max(0, ln q − ln q_r) is then fitted to the densities of 230 rings a decade by
+    /// * ln C = a − 2(1 + H) max(0, ln q − ln q_r), or 1 + 2H of a profile, is then fitted to the densities of 230 rings a decade by
     ///   least squares, each weighted by its number of independent waves (half of all), iterated so that the
     ///   residuals are those of C and not of its logarithm. This is Whittle's likelihood: the
     ///   density of one wave of a Gaussian surface is distributed exponentially, the mean logarithm of which is not the
@@ -152,9 +156,12 @@ impl Topography {
             place_between(&bins_with_power[fall.start - 1], above)
         });
         let long = (first > 0).then(|| place_between(&bins[first - 1], &bins[first]));
+        let (nx, ny) = self.grid().shape();
+        // Of 2(1 + H), or of 1 + 2H.
+        let beside = if nx.min(ny) > 1 { 1.0 } else { 0.5 };
         Ok(SelfAffineFit {
             hurst: Estimate {
-                value: 0.5 * law.exponent - 1.0,
+                value: 0.5 * law.exponent - beside,
                 standard_error: 0.5 * dependence * law.exponent_error,
             },
             rolloff_wavelength: law.rolloff_error.map(|error| {
@@ -169,7 +176,7 @@ impl Topography {
     }
 }
 
-/// C₀ from the plateau C₀ q_r^(−2(1+H)), whose density is (2π)² times that of `Spectrum`.
+/// C₀ from the plateau C₀ q_r^(−2(1+H)), or of a profile with 1 + 2H, whose density is (2π)² times that of `Spectrum`.
 fn prefactor(law: &Law, unit: f64) -> f64 {
     let logarithm = law.plateau + law.exponent * law.rolloff + libm::log(unit);
     libm::exp(logarithm) / (TAU * TAU)

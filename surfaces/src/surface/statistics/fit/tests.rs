@@ -34,6 +34,25 @@ fn exact_spectra_are_found() -> Result<(), Error> {
     Ok(())
 }
 
+/// A cut through a self-affine surface has its exponent. A surface of one row has a spectrum of its own, which falls as
+/// fast as that of a surface, so that its exponent as a profile is greater by a half.
+#[test]
+fn profiles_have_the_exponent_of_their_surface() -> Result<(), Error> {
+    let surface = SelfAffine::new(0.7, 1.0, 1.0 / 200.0, Amplitude::RmsHeight(1e-6), 5)?;
+    let map = Topography::sample(&surface, Grid::square(512, 1.0)?)?;
+    let (mut sum, cuts) = (0.0, 32);
+    for cut in 0..cuts {
+        let fitted = map.crop(0..512, 16 * cut..16 * cut + 1)?.fit_self_affine()?;
+        sum += fitted.hurst.value;
+    }
+    // Some 200 waves of a cut are an error of 0.05 each.
+    assert!((sum / cuts as f64 - 0.7).abs() < 0.03, "{}", sum / cuts as f64);
+    let row = Topography::sample(&surface, Grid::new(512, 1, 1.0 / 512.0, 1.0)?)?;
+    let found = row.fit_self_affine()?.hurst.value;
+    assert!((found - 1.2).abs() < 1e-3, "{found}");
+    Ok(())
+}
+
 #[test]
 fn spectra_without_rolloff_and_with_a_long_cutoff() -> Result<(), Error> {
     let grid = Grid::square(128, 1.0)?;
