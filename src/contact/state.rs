@@ -108,7 +108,8 @@ impl ContactState {
     pub(crate) fn not_finite(&self) -> Option<(&'static str, f64)> {
         let plastic = self.plastic.unwrap_or_default();
         let interfacial = self.interfacial_stiffness.unwrap_or_default();
-        let is_full = self.contact_area_fraction == 1.0;
+        let is_infinite = self.contact_area_fraction == 1.0 && !interfacial.is_nan();
+        let interfacial = if is_infinite { 0.0 } else { interfacial };
         let quantities = [
             ("approach", self.approach),
             ("load", self.load),
@@ -122,7 +123,7 @@ impl ContactState {
             ("plastic volume for each newton", plastic.volume_per_load),
             ("plastic work for each newton", plastic.work_per_load),
             ("contact stiffness", self.contact_stiffness.unwrap_or_default()),
-            ("interfacial stiffness", if is_full { interfacial.min(0.0) } else { interfacial }),
+            ("interfacial stiffness", interfacial),
         ];
         quantities.into_iter().find(|(_, value)| !value.is_finite())
     }
