@@ -127,17 +127,11 @@ impl FixedLoadSolution {
                 ..PlasticState::default()
             }
         });
+        let mean_gap = sum_over(nodes, open) / nodes as f64;
         let contact = ContactState {
-            contact_nodes,
-            approach,
-            load,
-            contact_area: contact_nodes as f64 * cell_area,
-            contact_area_fraction: contact_nodes as f64 / nodes as f64,
-            mean_gap: sum_over(nodes, open) / nodes as f64,
-            contact_stiffness: None,
-            interfacial_stiffness: None,
             energy: 0.5 * cell_area * dot(p, displacement.as_slice()),
             plastic,
+            ..ContactState::new(&level.grid, contact_nodes, approach, load, mean_gap)
         };
         let conditions = Conditions::new(load / cell_area, approach, level.scale);
         let certificate =

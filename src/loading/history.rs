@@ -283,6 +283,7 @@ mod tests {
                 load: step as f64,
                 contact_area: step as f64,
                 contact_area_fraction: 0.1 * step as f64,
+                nominal_area: 10.0,
                 mean_gap,
                 contact_stiffness: Some(1.0),
                 interfacial_stiffness: Some(10.0),
