@@ -34,7 +34,8 @@ function unitFor(unit, greatest, nominal) {
     const area = chosen.area === "auto" ? ["m²", "mm²", "µm²"].find((name) => greatest * nominal >= FACTORS[name]) ?? "µm²" : chosen.area;
     return { name: area, factor: FACTORS[area] / nominal };
   }
-  if (unit === "" || unit === "m²" || unit === "m³") return { name: unit, factor: 1 };
+  // A prefix would be raised to the power of its metre.
+  if (unit === "" || unit === "m²" || unit === "m³" || unit === "m³/s") return { name: unit, factor: 1 };
   return prefixed(unit, greatest);
 }
 
