@@ -3,7 +3,7 @@
 use asperity::contact::ContactFields;
 use asperity::loading::History;
 use asperity::nalgebra::DMatrix;
-use asperity::{Error, Grid, LoadingPath};
+use asperity::{ContactEvent, Error, Grid, LoadingPath};
 use serde_json::{Value, json};
 
 use crate::blob::deflated;
@@ -107,7 +107,12 @@ fn contact_at<'a>(grid: &'a Grid, history: &'a History) -> impl Fn(usize) -> Vec
         for state in history.states().iter().take(place + 1) {
             let node = state.node.0 + grid.nx() * state.node.1;
             let Some(node) = is_in.get_mut(node) else { continue };
-            *node = state.event != asperity::ContactEvent::Release;
+            *node = match state.event {
+                ContactEvent::Touch => true,
+                ContactEvent::Release => false,
+                // A limit has the node of the last event, whatever that was.
+                _ => continue,
+            };
         }
         is_in
     }
@@ -148,4 +153,46 @@ pub(crate) fn heights(heights: &DMatrix<f64>) -> Value {
     let all = vec![true; levels.len()];
     let data = deflated(&predicted(&levels, &all, heights.nrows()));
     json!({"least": least, "greatest": most, "levels": HEIGHTS, "data": data})
+}
+
+#[cfg(test)]
+mod tests {
+    use asperity::surface::HeightMap;
+    use asperity::{Boussinesq, LoadingSolver, LoadingState};
+
+    use super::*;
+
+    /// A path may be asked for a load that it reaches just after a node has left.
+    #[test]
+    fn a_limit_changes_no_contact() -> Result<(), Error> {
+        let grid = Grid::square(4, 1e-3)?;
+        let kernel = Boussinesq::new(grid, 1e9)?;
+        let surface = HeightMap::new(DMatrix::from_fn(4, 4, |ix, iy| (ix + 4 * iy) as f64 * 1e-7))?;
+        let run =
+            LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.2).build()?.run()?;
+        let contact = run.states().last().map(|state| state.contact);
+        let events = [
+            (ContactEvent::Touch, (1, 0)),
+            (ContactEvent::Touch, (2, 0)),
+            (ContactEvent::Yield, (1, 0)),
+            (ContactEvent::Release, (2, 0)),
+            (ContactEvent::Limit, (2, 0)),
+        ];
+        let history: History = (1..)
+            .zip(events)
+            .filter_map(|(step, (event, node))| {
+                Some(LoadingState::new(step, event, node, contact?))
+            })
+            .collect();
+        let nodes = |place| {
+            let is_in = contact_at(&grid, &history)(place);
+            (0..16).filter(|&node| is_in[node]).collect::<Vec<_>>()
+        };
+        for (place, expected) in
+            [vec![1], vec![1, 2], vec![1, 2], vec![1], vec![1]].iter().enumerate()
+        {
+            assert_eq!(nodes(place), *expected, "after event {place}");
+        }
+        Ok(())
+    }
 }
