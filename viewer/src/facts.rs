@@ -32,10 +32,7 @@ pub(crate) fn of(record: &LoadingRecord) -> Result<Vec<Value>, Error> {
     if let Some(e_star) = record.kernel().origin.composite_modulus() {
         facts.push(fact("composite modulus E*", e_star, "Pa"));
     }
-    if let KernelOrigin::Layered { body }
-    | KernelOrigin::PeriodicLayered { body }
-    | KernelOrigin::SpectralLayered { body } = &record.kernel().origin
-    {
+    if let Some(body) = layered(&record.kernel().origin) {
         facts.extend(layers(body));
     }
     for (number, (young, poisson)) in (1..).zip(record.bodies()) {
@@ -77,6 +74,15 @@ fn kernel(origin: &KernelOrigin) -> &'static str {
         | KernelOrigin::PeriodicLayered { .. }
         | KernelOrigin::SpectralLayered { .. } => "of elastic layers",
         _ => "of the user",
+    }
+}
+
+fn layered(origin: &KernelOrigin) -> Option<&LayeredBody> {
+    match origin {
+        KernelOrigin::Layered { body }
+        | KernelOrigin::PeriodicLayered { body }
+        | KernelOrigin::SpectralLayered { body } => Some(body),
+        _ => None,
     }
 }
 
@@ -164,8 +170,12 @@ pub(crate) fn warnings(
     let (grid, kernel) = (record.grid(), record.kernel());
     let surface = Topography::new(grid, record.heights().matrix().clone())?;
     let mut warnings = Warning::of_surface(&surface);
-    let e_star = kernel.origin.composite_modulus();
+    let body = layered(&kernel.origin);
+    // Of a coated body that of its surface, as in the program.
+    let e_star =
+        kernel.origin.composite_modulus().or_else(|| body.map(LayeredBody::surface_modulus));
     warnings.extend(e_star.and_then(Warning::of_modulus));
+    warnings.extend(body.and_then(|body| Warning::of_layers(body, &grid)));
     if let Some(pressure) = pressure {
         let contact = record.contact()?;
         let map = contact.map_at(contact.len());

@@ -39,6 +39,9 @@ use serde_json::{Value, json};
 pub use facts::reason;
 pub use table::PathTable;
 
+/// Paths that a page can show.
+const PATHS: usize = 2;
+
 /// A path for a page.
 pub struct Source<'a> {
     name: String,
@@ -91,7 +94,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// A page of one path, or of several to compare.
+/// A page of one path, or of two to compare.
 #[derive(Debug, Default)]
 pub struct Report {
     command: Option<String>,
@@ -119,22 +122,29 @@ impl Report {
         &self.notes
     }
 
-    /// Adds a path. Where its fields cannot be computed, as on a kernel that is not of the crate, the page has none and
-    /// says why.
+    /// Adds a path, the first or the second. Where its fields cannot be computed, as on a kernel that is not of the
+    /// crate, the page has none and says why.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a record without a state; those of [`LoadingRecord::contact`].
+    /// [`Error::OutOfRange`] for a third path, and for a record without a state; those of [`LoadingRecord::contact`].
     pub fn add(&mut self, source: Source<'_>) -> Result<(), Error> {
         let Source { name, record, path, folders, has_fields } = source;
         let grid = record.grid();
-        let Some(last) = record.states().last() else {
+        if self.records.len() == PATHS {
+            return Err(Error::OutOfRange {
+                quantity: "number of paths of the page",
+                value: PATHS as f64 + 1.0,
+                expected: "1 or 2",
+            });
+        }
+        if record.states().is_empty() {
             return Err(Error::OutOfRange {
                 quantity: "number of states of the record",
                 value: 0.0,
                 expected: "at least 1",
             });
-        };
+        }
         let (mut notes, mut panels, mut settings) = (Vec::new(), Vec::new(), None);
         for (folder, since) in folders {
             let found = beside::of(&folder, since);
@@ -172,7 +182,6 @@ impl Report {
             "warnings": facts::warnings(record, computed.pressure.as_ref())?,
             "notes": notes,
             "certificate": computed.certificate,
-            "approach_error": last.approach_error,
             "events": events,
             "heights": heights,
             "fields": computed.fields,

@@ -6,6 +6,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
+use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::History;
 use asperity::patches::{Connectivity, ContactEdge, PatchHistory};
 use asperity::record::{KernelRecord, LoadingRecord, Settings};
@@ -226,6 +227,38 @@ fn a_record_without_states_has_no_page() -> Result<(), Error> {
     let record =
         LoadingRecord::from_parts(grid, heights, kernel, settings, History::default(), None)?;
     assert!(matches!(page_of("nothing", &record), Err(Error::OutOfRange { .. })));
+    Ok(())
+}
+
+/// The page compares two paths, and shows no third.
+#[test]
+fn a_page_has_room_for_two_paths() -> Result<(), Error> {
+    let record = record_of(16, 0.1, None, false)?;
+    let mut report = Report::new();
+    report.add(Source::new("a", &record))?;
+    report.add(Source::new("b", &record))?;
+    let third = report.add(Source::new("c", &record)).unwrap_err();
+    assert_eq!(third.to_string(), "number of paths of the page must be 1 or 2, but is 3");
+    assert_eq!(report.data()["records"].as_array().unwrap().len(), 2);
+    Ok(())
+}
+
+/// The page says of a coated body what the program says.
+#[test]
+fn cells_wider_than_a_coat_are_warned_of() -> Result<(), Error> {
+    let grid = Grid::square(16, 1e-2 / 16.0)?;
+    let surface = SelfAffine::zhang2020(1);
+    for (thickness, expected) in [(1e-5, true), (1e-3, false)] {
+        let coat = Layer { young: 2e9, poisson: 0.4, thickness };
+        let body = LayeredBody::new(&[coat], Base::HalfSpace { young: 210e9, poisson: 0.3 })?;
+        let kernel = Layered::free(grid, body)?;
+        let mut path = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.1).build()?;
+        let history = path.run()?;
+        let record = LoadingRecord::new(&path, history)?;
+        let data = report::data(&page_of("coated", &record)?);
+        let warnings = data["records"][0]["warnings"].to_string();
+        assert_eq!(warnings.contains("wider than the coat is thick"), expected, "{warnings}");
+    }
     Ok(())
 }
 
