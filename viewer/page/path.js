@@ -13,7 +13,7 @@ class ContactPath {
     const { nx, ny, events } = record;
     demand(isCount(nx) && isCount(ny) && nx * ny > 0 && nx * ny < 2 ** 27, "The file is damaged: its grid has no size.");
     demand(events && isCount(events.count) && events.count > 0, "The record has no state.");
-    Object.assign(this, { record, nx, ny, size: nx * ny, count: events.count, cell: record.nominal_area / (nx * ny) });
+    Object.assign(this, { record, nx, ny, size: nx * ny, count: events.count });
     this.nodes = await planes(events.nodes, this.count, "the nodes of the events");
     this.kinds = await planes(events.kinds, this.count, "the kinds of the events");
     this.columns = {};

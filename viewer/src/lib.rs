@@ -175,7 +175,6 @@ impl Report {
             "ny": ny,
             "lx": lx,
             "ly": ly,
-            "repeats": record.kernel().boundary.repeats(),
             "nominal_area": grid.nominal_area(),
             "facts": facts::of(record)?,
             "settings": settings,

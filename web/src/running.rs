@@ -91,7 +91,6 @@ impl Running {
             "load": last.load,
             "area": last.contact_area_fraction,
             "share": share,
-            "handed_over_at": self.path.handed_over_at(),
         })
     }
 
