@@ -7,6 +7,7 @@ const PLAY = 14;
 
 class Viewer {
   constructor(paths, data) {
+    Object.assign(this, { charts: [], panels: [], marked: [] });
     this.controls();
     this.begin(paths, data);
     new ResizeObserver(() => this.resized()).observe(byId("stage"));
@@ -98,12 +99,9 @@ class Viewer {
     this.charts.forEach((chart) => chart.setPlace(value));
     // Other tables are of one path, and some of them run over its load.
     this.panels.filter(({ along }) => along === "load").forEach(({ charts, path }) => charts.forEach((chart) => chart.setPlace(path.columns.load[path.present])));
-    const row = this.rows?.get(this.event);
-    if (row !== this.row) {
-      this.row?.classList.remove("now");
-      row?.classList.add("now");
-      this.row = row;
-    }
+    this.marked.forEach((row) => row.classList.remove("now"));
+    this.marked = this.rows.flatMap((rows, i) => rows.get(this.maps[i].event) ?? []);
+    this.marked.forEach((row) => row.classList.add("now"));
     const { columns, contactNodes } = this.path;
     const words = `${quantity(columns.load[this.event], "N")}, ${contactNodes[this.event]} nodes in contact, ${digits(100 * columns.area[this.event])} %, event ${this.event + 1} of ${this.path.count}`;
     slider.setAttribute("aria-valuetext", words);
@@ -145,7 +143,8 @@ class Viewer {
     byId("tables").replaceChildren(...tables);
     byId("words").replaceChildren(...paths.map((path) => wordsOf(path.record)));
     this.everyChart().slice(this.charts.length).forEach((chart) => chart.draw());
-    this.rows = new Map([...tables[0].querySelectorAll("tr[data-event]")].map((row) => [Number(row.dataset.event), row]));
+    const rowsOf = (table) => [...table.querySelectorAll("tr[data-event]")].map((row) => [Number(row.dataset.event), row]);
+    this.rows = tables.map((table) => new Map(rowsOf(table)));
     this.width = byId("stage").clientWidth;
     this.goTo(this.event);
   }
