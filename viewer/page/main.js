@@ -117,6 +117,7 @@ class Viewer {
   remake() {
     const { paths, along, logX, logY } = this;
     const chosenAlong = ALONG.find(([name]) => name === along);
+    this.everyChart().forEach((chart) => chart.plot.destroy());
     this.maps.forEach((map) => map.recolour());
     const several = paths.length > 1;
     this.charts = CHARTS.flatMap(([title, unit, series]) => {
