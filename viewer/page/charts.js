@@ -65,10 +65,14 @@ class Chart {
       return { places, line, number };
     });
     x.in = unitFor(x.unit, Math.max(...lines.map((line) => greatest(line.x))), x.nominal);
-    y.in = y.unit === "part" ? { name: "%", factor: 0.01 } : unitFor(y.unit, Math.max(...all.map(({ places, line }) => greatest(places.map((place) => line.y[place])))), y.nominal);
+    const tops = all.map(({ places, line }) => share(line) * greatest(places.map((place) => line.y[place])));
+    y.in = y.unit === "part" ? { name: "%", factor: 0.01 } : unitFor(y.unit, Math.max(...tops), y.nominal);
     const tables = all.map(({ places, line, number }) => {
       const kept = places.filter((place) => number(line.x[place], x.log, 1) !== null);
-      return [kept.map((place) => line.x[place] / x.in.factor), kept.map((place) => number(line.y[place], y.log, y.in.factor))];
+    // Parts of another nominal area are other areas.
+    const share = (line) => (y.unit === "1" && chosen.area !== "%" && line.nominal ? line.nominal / y.nominal : 1);
+      const factor = y.in.factor / share(line);
+      return [kept.map((place) => line.x[place] / x.in.factor), kept.map((place) => number(line.y[place], y.log, factor))];
     });
     this.data = uPlot.join(tables);
     const axis = (words, log) => ({
@@ -114,9 +118,9 @@ class Chart {
     this.read();
   }
 
-  /** The slider is at a value along x. */
-  setPlace(value) {
-    this.place = value;
+  /** The slider is at a value along x, and each path after an event of this value, or none beyond its end. */
+  setPlace(value, events) {
+    Object.assign(this, { place: value, events });
     this.follow();
   }
 
@@ -130,17 +134,20 @@ class Chart {
   }
 
   read() {
-    const place = this.hovered ?? this.place;
+    const place = this.hovered ?? this.place, events = this.hovered === place ? undefined : this.events;
     if (place === undefined || place === null) {
       this.values.forEach((value) => (value.textContent = ""));
       return;
     }
     const values = this.lines.map((line) => {
-      const at = line.at ? line.at(place) : null;
-      return at === null ? NaN : line.y[at];
+      const at = events ? events[line.record] : line.at?.(place) ?? null;
+      return at === null ? NaN : line.y[line.of ? line.of(at) : at];
     });
     const { unit } = this.y;
-    const words = values.map((value) => (unit === "part" ? `${digits(100 * value)} %` : unit === "" && Number.isInteger(value) ? String(value) : quantity(value, unit, this.y.nominal)));
+    const words = values.map((value, i) => {
+      if (unit === "part" && Number.isFinite(value)) return `${digits(100 * value)} %`;
+      return unit === "" && Number.isInteger(value) ? String(value) : quantity(value, unit, this.lines[i].nominal);
+    });
     words.forEach((text, i) => {
       const shown = this.hovered === null || this.hovered === undefined || i < words.length - 1 ? text : `${text} at ${quantity(place, this.x.unit, this.x.nominal)}`;
       if (this.values[i].textContent !== shown) this.values[i].textContent = shown;

@@ -96,7 +96,8 @@ class Viewer {
       map.show(i === this.lead ? this.event : map.path.eventAt(this.along, value));
       map.ended.hidden = !(value > map.path.grown(this.along).at(-1));
     });
-    this.charts.forEach((chart) => chart.setPlace(value));
+    const events = this.maps.map(({ event, ended }) => (ended.hidden ? event : null));
+    this.charts.forEach((chart) => chart.setPlace(value, events));
     // Other tables are of one path, and some of them run over its load.
     this.panels.filter(({ along }) => along === "load").forEach(({ charts, path }) => charts.forEach((chart) => chart.setPlace(path.columns.load[path.present])));
     this.marked.forEach((row) => row.classList.remove("now"));
@@ -116,25 +117,30 @@ class Viewer {
   /** Everything that units, colours and axes change. */
   remake() {
     const { paths, along, logX, logY } = this;
-    const chosenAlong = ALONG.find(([name]) => name === along);
     this.everyChart().forEach((chart) => chart.plot.destroy());
+    const chosenAlong = ALONG.find(([name]) => name === along);
     this.maps.forEach((map) => map.recolour());
-    const several = paths.length > 1;
+    const several = paths.length > 1, nominal = paths[0].record.nominal_area;
+    // The slider compares parts of the area.
+    const common = paths.every((path) => path.record.nominal_area === nominal) ? nominal : undefined;
     this.charts = CHARTS.flatMap(([title, unit, series]) => {
-      const lines = paths.flatMap((path, record) =>
-        series
+      const lines = paths.flatMap((path, record) => {
+        const end = path.grown(along).at(-1) * (1 + 1e-12);
+        const at = (value) => (value > end ? null : path.eventAt(along, value * (1 + 1e-12)));
+        return series
           .map(([name, label], dash) => ({ name, label: several ? `${"AB"[record]} ${label}`.trim() : label, dash }))
           .filter(({ name }) => path.columns[name] && (name !== "yielded" || path.hasYielded))
           .map(({ name, label, dash }) => {
-            const line = { label, dash, colour: lineColour(record), x: path.columns[along], y: path.columns[name], at: (value) => path.eventAt(along, value * (1 + 1e-12)) };
+            const { columns, record: { nominal_area: nominal } } = path;
+            const line = { label, dash, colour: lineColour(record), x: columns[along], y: columns[name], record, nominal, at };
             // Fields are known at few states.
             if (name !== "greatest_pressure") return line;
-            return { ...line, places: path.states.map(({ event }) => event), at: (value) => path.nearest(line.at(value)).event };
-          }),
-      );
+            return { ...line, places: path.states.map(({ event }) => event), of: (event) => path.nearest(event).event };
+          });
+      });
       if (!lines.length) return [];
-      const nominal = paths[0].record.nominal_area;
-      return [new Chart(title, { words: chosenAlong[1], unit: chosenAlong[2], log: logX, nominal }, { words: title.toLowerCase().replace(", of the contact", ""), unit, log: logY, nominal }, lines, (value) => this.toValue(value))];
+      const x = { words: chosenAlong[1], unit: chosenAlong[2], log: logX, nominal: common };
+      return [new Chart(title, x, { words: title.toLowerCase().replace(", of the contact", ""), unit, log: logY, nominal }, lines, (value) => this.toValue(value))];
     });
     byId("charts").replaceChildren(...this.charts.map(({ figure }) => figure));
     this.charts.forEach((chart) => chart.draw());
