@@ -1,5 +1,11 @@
 // Tables of words and numbers.
 
+/** A number that is copied or saved: to the digits that columns have, unless it counts something. */
+function plain(value) {
+  if (!Number.isFinite(value)) return "";
+  return String(Number.isInteger(value) ? value : +value.toPrecision(5));
+}
+
 /** Facts as rows. */
 function factRows(facts) {
   return facts.map(({ name, value, unit }) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, factText(value, unit))));
@@ -52,11 +58,11 @@ function stateTable(path, onEvent) {
   const table = make("table", { class: "states" }, head, make("tbody", {}, ...rows));
   const lines = (separator) => [
     columns.map(({ words }, i) => (units[i].name ? `${words} [${units[i].name}]` : words)),
-    ...events.map((event) => columns.map((column, i) => (Number.isFinite(column.of(event)) ? String(+(column.of(event) / units[i].factor).toPrecision(6)) : ""))),
+    ...events.map((event) => columns.map((column, i) => plain(column.of(event) / units[i].factor))),
   ].map((cells) => cells.join(separator)).join("\n") + "\n";
   const si = () => [
     columns.map(({ name, unit }) => (unit && unit !== "1" && unit !== "nodes" ? `${name} [${unit}]` : name)),
-    ...events.map((event) => columns.map((column) => (Number.isFinite(column.of(event)) ? String(+column.of(event).toPrecision(6)) : ""))),
+    ...events.map((event) => columns.map((column) => plain(column.of(event)))),
   ].map((cells) => cells.join(",")).join("\n") + "\n";
   const told = make("span", { role: "status", class: "told" });
   const copy = make("button", { type: "button", onclick: async () => (told.textContent = await copied(lines("\t"), table)) }, "Copy the table");
