@@ -36,7 +36,7 @@ const KINDS: [Kind; 6] = [
         title: "Cycles",
         short: "Cycles",
         along: "",
-        charts: &["dissipation", "dissipation", "loss_factor"],
+        charts: &["dissipation", "loss_factor"],
     },
     Kind {
         file: "creep.csv",
