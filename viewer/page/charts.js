@@ -36,7 +36,11 @@ function spread(values, isLog) {
 }
 
 class Chart {
-  /** Lines are `{ label, colour, dash, x, y }` with whole columns; axes `{ words, unit, log, nominal }`. */
+  /**
+   * Lines are `{ label, colour, dash, x, y, at }` with whole columns, and the place at a value along x if there is one.
+   * Those of a path have `{ record, nominal, of }`: its number, its nominal area, and which event is read in place of
+   * another; those with `rows` are drawn in this order, forth and back. Axes are `{ words, unit, log, nominal }`.
+   */
   constructor(title, x, y, lines, onPlace) {
     Object.assign(this, { title, x, y, lines });
     this.legend = make("div", { class: "legend" });
@@ -64,17 +68,23 @@ class Chart {
       const number = (value, log, factor) => (Number.isFinite(value) && (!log || value > 0) ? value / factor : null);
       return { places, line, number };
     });
+    // Parts of another nominal area are other areas.
+    const share = (line) => (y.unit === "1" && chosen.area !== "%" && line.nominal ? line.nominal / y.nominal : 1);
     x.in = unitFor(x.unit, Math.max(...lines.map((line) => greatest(line.x))), x.nominal);
     const tops = all.map(({ places, line }) => share(line) * greatest(places.map((place) => line.y[place])));
     y.in = y.unit === "part" ? { name: "%", factor: 0.01 } : unitFor(y.unit, Math.max(...tops), y.nominal);
     const tables = all.map(({ places, line, number }) => {
       const kept = places.filter((place) => number(line.x[place], x.log, 1) !== null);
-    // Parts of another nominal area are other areas.
-    const share = (line) => (y.unit === "1" && chosen.area !== "%" && line.nominal ? line.nominal / y.nominal : 1);
       const factor = y.in.factor / share(line);
       return [kept.map((place) => line.x[place] / x.in.factor), kept.map((place) => number(line.y[place], y.log, factor))];
     });
+    this.traces = all.map(({ line, number }) =>
+      line.rows
+        ?.map((row) => [number(line.x[row], x.log, x.in.factor), number(line.y[row], y.log, y.in.factor)])
+        .filter((point) => !point.includes(null)),
+    );
     this.data = uPlot.join(tables);
+    const drawn = this.traces.map((points) => points && { paths: traced(points) });
     const axis = (words, log) => ({
       label: words,
       labelSize: 18,
@@ -93,10 +103,10 @@ class Chart {
         width,
         height: 210,
         legend: { show: false },
-        cursor: { drag: { x: false, y: false }, points: { show: lines.length > 0 } },
+        cursor: { drag: { x: false, y: false }, points: { show: lines.every(({ rows }) => !rows) } },
         scales: { x: { time: false, distr: x.log ? 3 : 1, range: (plot, least, most) => (least < most ? [least, most] : around(least, most, x.log)) }, y: { distr: y.log ? 3 : 1, range: (plot, least, most) => (y.log || !(least < most) ? around(least, most, y.log) : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
         axes: [{ ...axis(label(x), x.log), size: 30 }, { ...axis(label(y), y.log), size: 48 }],
-        series: [{}, ...lines.map((line) => ({ stroke: () => line.colour, width: 1.8, dash: DASHES[line.dash], spanGaps: true, points: { show: (line.places?.length ?? Infinity) < 50, size: 5, fill: line.colour } }))],
+        series: [{}, ...lines.map((line, i) => ({ ...drawn[i], stroke: () => line.colour, width: 1.8, dash: DASHES[line.dash], spanGaps: true, points: { show: (line.places?.length ?? Infinity) < 50, size: 5, fill: line.colour } }))],
         hooks: { setCursor: [(plot) => this.hover(plot)], draw: [() => this.follow()] },
       },
       this.data,
@@ -159,6 +169,13 @@ class Chart {
     if (this.said) this.holder.setAttribute("aria-label", this.said);
   }
 }
+
+/** A line through these points in their order. */
+const traced = (points) => (plot) => {
+  const stroke = new Path2D();
+  for (const [x, y] of points) stroke.lineTo(plot.valToPos(x, "x", true), plot.valToPos(y, "y", true));
+  return { stroke };
+};
 
 /** Ends of an axis for values that are all the same, for logarithms in whole decades, or for none at all. */
 function around(least, most, log) {

@@ -83,7 +83,8 @@ function svgOf(chart, { inkColour = "#111", gridColour = "#ccc" } = {}) {
   parts.push(`<text transform="translate(12 ${middle}) rotate(-90)" text-anchor="middle">${label(y)}</text>`);
   parts.push(`<rect x="${box.left}" y="${box.top + top}" width="${box.width}" height="${box.height}" fill="none" stroke="${gridColour}"/>`);
   lines.forEach((line, i) => {
-    const points = chart.data[0].map((value, k) => [value, chart.data[i + 1][k]]).filter(([, value]) => value !== null && value !== undefined);
+    const drawn = chart.traces[i] ?? chart.data[0].map((value, k) => [value, chart.data[i + 1][k]]);
+    const points = drawn.filter(([, value]) => value !== null && value !== undefined);
     const trace = points.map(([a, b], k) => `${k ? "L" : "M"}${at(a, "x").toFixed(2)} ${at(b, "y").toFixed(2)}`).join("");
     const dash = DASHES[line.dash].length ? ` stroke-dasharray="${DASHES[line.dash].join(" ")}"` : "";
     parts.push(`<path d="${trace}" fill="none" stroke="${line.colour}" stroke-width="1.8"${dash}/>`);

@@ -96,13 +96,18 @@ function panel(found) {
     .filter((column) => column && column.values.some(Number.isFinite))
     .map((column) => {
       const words = (name) => name.replaceAll("_", " ");
-      const order = along.values.map((_, i) => i).filter((i) => Number.isFinite(along.values[i])).sort((a, b) => along.values[a] - along.values[b]);
-      const x = order.map((i) => along.values[i]), y = order.map((i) => column.values[i]);
-      const positive = x.every((value) => value > 0) && x.at(-1) > 200 * x[0];
-      const steep = y.filter((value) => value > 0);
+      const known = along.values.map((_, i) => i).filter((i) => Number.isFinite(along.values[i]));
+      const x = known.map((i) => along.values[i]), y = known.map((i) => column.values[i]);
+      const rows = x.map((_, i) => i), places = rows.slice().sort((a, b) => x[a] - x[b]);
+      const positive = x.every((value) => value > 0) && Math.max(...x) > 200 * Math.min(...x);
       const at = (value) => x.reduce((best, one, i) => (Math.abs(one - value) < Math.abs(x[best] - value) ? i : best), 0);
-      const line = { label: "", colour: lineColour(0), dash: 0, x, y, at, places: x.map((_, i) => i) };
-      const log = steep.length === y.filter(Number.isFinite).length && Math.max(...steep) > 200 * Math.min(...steep);
+      const line = { label: "", colour: lineColour(0), dash: 0, x, y, at, places };
+      // A loop has several values at one place.
+      const isLoop = x.some((value, i) => value > x[i - 1]) && x.some((value, i) => value < x[i - 1]);
+      if (isLoop) Object.assign(line, { rows, at: null });
+      // Zeros are left out: of a seal that closes the rest is steep.
+      const steep = y.filter((value) => value > 0);
+      const log = !y.some((value) => value < 0) && Math.max(...steep) > 200 * Math.min(...steep);
       return new Chart(`${found.short}: ${words(column.name)}`, { words: words(along.name), unit: unitOfColumn(along.name), log: positive }, { words: words(column.name), unit: unitOfColumn(column.name), log }, [line]);
     });
   section.append(make("div", { class: "charts" }, ...charts.map(({ figure }) => figure)));
