@@ -126,6 +126,19 @@ class MapView {
   /** Colours of all nodes once they are in contact, by the order in which they touch. */
   recolour() {
     const { path, scale } = this, by = new Uint32Array(path.size);
+  /** How many nodes are "touching now". */
+  newestNodes() {
+    return Math.max(1, Math.ceil(NEWEST * this.path.contactNodes[this.event]));
+  }
+
+  /** The event after which they have touched: other events, and touches that were undone, do not count. */
+  beforeNewest() {
+    const { touched, nodes } = this.path;
+    let from = this.event;
+    for (let left = this.newestNodes(); left > 0 && from >= 0; from--) if (touched[nodes[from]] === from) left--;
+    return from;
+  }
+
     const { load } = path.columns, last = Math.max(1, scale.contactNodes[scale.count - 1]);
     for (let node = 0; node < path.size; node++) {
       const first = path.first[node];
@@ -146,7 +159,7 @@ class MapView {
     const { touched, yielded, columns } = path;
     const state = this.state();
     const mode = this.colour.value, ground = this.ground.value;
-    const newest = path.contactNodes[event] > 0 ? event - Math.max(1, Math.ceil(NEWEST * path.contactNodes[event])) : event;
+    const newest = this.beforeNewest();
     const { out, newest: fresh } = this.themed, plain = viridis[110];
     const scale = state ? 255 / state.levels : 0, orange = this.orange.checked, shades = mode === "pressure" ? this.shadesOf(state) : null;
     for (let iy = 0, node = 0; iy < ny; iy++) {
@@ -181,7 +194,7 @@ class MapView {
   words(state) {
     const { path, event } = this, mode = this.colour.value;
     const kept = `${mode} ${this.ground.value} ${state?.number} ${Object.values(chosen)} ${isDark()} ${this.orange.checked}`;
-    const newest = Math.max(1, Math.ceil(NEWEST * path.contactNodes[event]));
+    const newest = this.newestNodes();
     const fresh = mode === "pressure" ? (state.event < event ? "touched since that state" : "") : newest === 1 ? "touching now" : `touching now: the newest ${newest}`;
     if (kept === this.kept && fresh === this.fresh) return;
     Object.assign(this, { kept, fresh });
