@@ -295,7 +295,8 @@ function drawMarks(context, width, height, ratio, view) {
   if (node !== null) ring(node, "#0072b2", 6);
   const { factor, name } = unitFor("m", record.lx);
   const target = (0.25 * record.lx) / factor, power = 10 ** Math.floor(Math.log10(target));
-  const length = [5, 2, 1].find((digit) => digit * power <= target) * power;
+  // Where the logarithm is rounded up, the power is above the target.
+  const length = ([5, 2, 1].find((digit) => digit * power <= target) ?? 1) * power;
   const pixels = ((length * factor) / record.lx) * width, margin = 10 * ratio;
   context.font = `${12 * ratio}px system-ui, sans-serif`;
   const words = `${digits(length, 3).replace(/\.0+$/, "")} ${name}`;
