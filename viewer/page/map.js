@@ -11,6 +11,9 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** Width over height of a map. One of a profile is made higher or wider than it is, to be seen. */
+const shown = (lx, ly) => Math.min(8, Math.max(1 / 8, lx / ly));
+
 const option = ([value, words]) => make("option", { value }, words);
 
 /** The scalars that are read out: name, column, unit. */
@@ -47,7 +50,7 @@ class MapView {
     this.key = make("p", { class: "key" });
     this.under = make("p", { class: "under" });
     this.box = make("div", { class: "box" }, this.canvas, this.marks);
-    this.box.style.aspectRatio = `${record.lx} / ${record.ly}`;
+    this.box.style.aspectRatio = String(shown(record.lx, record.ly));
     this.ended = make("em", {}, "has ended here");
     this.readout = make("dl", { class: "readout" });
     this.isOrange = make("label", {}, this.orange, " yielded nodes orange");
@@ -123,9 +126,6 @@ class MapView {
     return this.path.nearest(this.event);
   }
 
-  /** Colours of all nodes once they are in contact, by the order in which they touch. */
-  recolour() {
-    const { path, scale } = this, by = new Uint32Array(path.size);
   /** How many nodes are "touching now". */
   newestNodes() {
     return Math.max(1, Math.ceil(NEWEST * this.path.contactNodes[this.event]));
@@ -139,6 +139,9 @@ class MapView {
     return from;
   }
 
+  /** Colours of all nodes once they are in contact, by the order in which they touch. */
+  recolour() {
+    const { path, scale } = this, by = new Uint32Array(path.size);
     const { load } = path.columns, last = Math.max(1, scale.contactNodes[scale.count - 1]);
     for (let node = 0; node < path.size; node++) {
       const first = path.first[node];

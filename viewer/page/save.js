@@ -25,8 +25,8 @@ async function copied(text, table) {
 /** The map with its marks, its colour bar and what it shows. */
 function saveMap(view) {
   const { path, event } = view, { record } = path;
-  const side = 1200, ratio = side / Math.max(record.lx, record.ly);
-  const [width, height] = [Math.round(record.lx * ratio), Math.round(record.ly * ratio)];
+  const side = 1200, ratio = shown(record.lx, record.ly);
+  const [width, height] = ratio > 1 ? [side, Math.round(side / ratio)] : [Math.round(side * ratio), side];
   const picture = make("canvas", { width: Math.max(width, 700) + 40, height: height + 190 });
   const context = picture.getContext("2d");
   context.fillStyle = ink("--paper");

@@ -98,7 +98,7 @@ function generate() {
 function draw([nx, ny], sides, levels) {
   const canvas = byId("picture"), context = canvas.getContext("2d");
   Object.assign(canvas, { width: nx, height: ny });
-  canvas.style.aspectRatio = sides ? `${sides[0]} / ${sides[1]}` : `${nx} / ${ny}`;
+  canvas.style.aspectRatio = String(shown(...(sides ?? [nx, ny])));
   const image = context.createImageData(nx, ny), pixels = new Uint32Array(image.data.buffer);
   for (let iy = 0, node = 0; iy < ny; iy++) {
     for (let ix = 0; ix < nx; ix++, node++) pixels[(ny - 1 - iy) * nx + ix] = levels[node] ? viridis[levels[node]] : rgba(200, 40, 40);
