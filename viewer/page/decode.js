@@ -8,7 +8,8 @@ const demand = (holds, words) => {
 };
 
 async function inflate(text, what) {
-  demand(typeof DecompressionStream === "function", "This browser is too old: it needs DecompressionStream (Chrome 80, Firefox 113, Safari 16.4).");
+  const isNew = typeof DecompressionStream === "function" && "findLast" in Array.prototype;
+  demand(isNew, "This browser is too old: the page needs Chrome 97, Firefox 113 or Safari 16.4, or newer.");
   try {
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
