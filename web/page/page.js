@@ -3,7 +3,7 @@
 const UNITS_OF_LENGTH = ["µm", "nm", "mm", "m", "cm", "Å", "pm", "in"];
 const GIGA = 1e9, MILLI = 1e-3, MICRO = 1e-6;
 
-let worker, file = null, isRunning = false;
+let worker, file = null, isReady = false, isRunning = false;
 
 const send = (type, rest = {}) => worker.postMessage({ type, ...rest });
 
@@ -66,11 +66,13 @@ function forget() {
 function read(chosen) {
   if (chosen !== file) {
     file = chosen;
+  isReady = false;
     byId("reading").reset();
     byId("channel").closest("label").hidden = true;
   }
   byId("reading").hidden = false;
   forget();
+  if (isRunning) throw new Fault("A path is running: stop it first, or wait for its end.");
   ask(null);
   tell(`${file.name} is being read`);
   send("read", { file, reading: reading() });
@@ -122,7 +124,8 @@ function showSurface(information, picture) {
     ...list("note", notes),
     facts("Surface", factRows(information.facts)) ?? "",
   );
-  byId("run").disabled = isRunning || needs.length > 0;
+  isReady = needs.length === 0;
+  byId("run").disabled = isRunning || !isReady;
   if (needs.length) ask(NEEDS[needs[0]], needs[0]);
   else ask(null);
   tell("");
@@ -162,7 +165,7 @@ function job() {
 
 function running(is) {
   isRunning = is;
-  byId("run").disabled = is;
+  byId("run").disabled = is || !isReady;
   byId("stop").hidden = byId("progress").hidden = !is;
   if (is) byId("go-on").hidden = byId("saves").hidden = true;
   for (const id of ["generate", "read", "file"]) byId(id).disabled = is;
@@ -287,7 +290,7 @@ function listen() {
   addEventListener("drop", guarded((event) => {
     drop.classList.remove("over");
     const [first] = event.dataTransfer.files;
-    if (first && !isRunning) read(first);
+    if (first) read(first);
   }));
 }
 
