@@ -240,6 +240,8 @@ function renew() {
   worker?.terminate();
   if (worker) {
     running(false);
+    // The states are there, though the page of them is not.
+    if (of === "whole") byId("saves").hidden = fault.kind === "broken";
     byId("saves").hidden = byId("go-on").hidden = true;
     forget();
   }
