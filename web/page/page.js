@@ -17,6 +17,13 @@ function number(id, factor = 1) {
   return factor < 1 ? value / (1 / factor) : value * factor;
 }
 
+/** The same of a field that must not be empty. */
+function needed(id, name, factor) {
+  const value = number(id, factor);
+  if (value === undefined) throw new Fault(`${name} is empty.`);
+  return value;
+}
+
 const choice = (id) => byId(id).value || undefined;
 
 function ask(words, name = null) {
@@ -59,23 +66,24 @@ const reading = () => ({
 
 /** Nothing can be run until a surface is there. */
 function forget() {
+  isReady = false;
   byId("run").disabled = true;
   byId("known").hidden = true;
 }
 
 function read(chosen) {
+  if (isRunning) throw new Fault("A path is running: stop it first, or wait for its end.");
   if (chosen !== file) {
     file = chosen;
-  isReady = false;
     byId("reading").reset();
     byId("channel").closest("label").hidden = true;
   }
   byId("reading").hidden = false;
   forget();
-  if (isRunning) throw new Fault("A path is running: stop it first, or wait for its end.");
+  const asked = reading();
   ask(null);
   tell(`${file.name} is being read`);
-  send("read", { file, reading: reading() });
+  send("read", { file, reading: asked });
 }
 
 function generate() {
@@ -148,9 +156,10 @@ function showFault({ kind, message, channels }) {
 // Path
 
 /** A body of the form: a name, two numbers, or nothing. */
-function body(id) {
+function body(id, words) {
   const value = byId(id).value;
-  if (value === "given") return [number(`${id}-young`, GIGA), number(`${id}-poisson`)];
+  const given = () => [needed(`${id}-young`, `E of ${words}`, GIGA), needed(`${id}-poisson`, `ν of ${words}`)];
+  if (value === "given") return given();
   return value === "rigid" || value === "modulus" ? undefined : value;
 }
 
@@ -159,8 +168,8 @@ function job() {
   const value = number("target-value", Number(target.dataset.factor));
   if (value === undefined) throw new Fault("Where is the path to end?");
   const asked = { half_space: byId("half-space").value, hardness: number("hardness", GIGA), target: { [target.value]: value } };
-  if (byId("body").value === "modulus") return { ...asked, e_star: number("e-star", GIGA) };
-  return { ...asked, body: body("body"), against: body("against") };
+  if (byId("body").value === "modulus") return { ...asked, e_star: needed("e-star", "E*", GIGA) };
+  return { ...asked, body: body("body", "the body"), against: body("against", "the other body") };
 }
 
 function running(is) {
@@ -231,6 +240,8 @@ const ANSWERS = {
   saved: ({ made: [name, type, content] }) => saveBlob(name, new Blob([content], { type })),
   fault({ of, fault }) {
     if (of === "run" || of === "whole") running(false);
+    // The states are there, though the page of them is not.
+    if (of === "whole") byId("saves").hidden = fault.kind === "broken";
     showFault(fault);
   },
 };
@@ -240,8 +251,6 @@ function renew() {
   worker?.terminate();
   if (worker) {
     running(false);
-    // The states are there, though the page of them is not.
-    if (of === "whole") byId("saves").hidden = fault.kind === "broken";
     byId("saves").hidden = byId("go-on").hidden = true;
     forget();
   }
