@@ -191,7 +191,9 @@ await step("map, chart and table are saved", async () => {
     assert.equal(lines.length, 24);
     for (const line of lines) {
       const event = Number(line[head.indexOf("event")]) - 1;
-      near(Number(line[head.indexOf("load [N]")]), csv.load[event], "load in the table");
+      const load = Number(line[head.indexOf("load [N]")]);
+      near(load, csv.load[event], "load in the table");
+      assert.equal(load, +load.toPrecision(5), "as many digits as are known");
       near(Number(line[head.indexOf("mean_gap [m]")]), csv.mean_gap[event], "mean gap in the table");
     }
   });
@@ -259,6 +261,28 @@ await step("units are as the reader chooses", async () => {
     near(number(text.replace(/nm$/, "nm")), csv[column][20000], name);
   }
   for (const unit of ["force", "length"]) await full.selectOption(`#unit-${unit}`, "auto");
+});
+
+await step("charts that are made again leave nothing of the old ones", async () => {
+  const [gone, all] = await full.evaluate(() => {
+    const old = viewer.everyChart(), gone = [];
+    old.forEach(({ plot }) => (plot.hooks.destroy = [(plot) => gone.push(plot)]));
+    viewer.remake();
+    return [gone.length, old.length];
+  });
+  assert.equal(gone, all);
+});
+
+await step("the scale bar is there where the logarithm of its length is rounded up", async () => {
+  const words = await full.evaluate(() => {
+    const said = [], context = document.createElement("canvas").getContext("2d");
+    context.fillText = (words) => said.push(words);
+    // A quarter of them is 10 µm less one unit in the last place.
+    const record = { lx: 4e-5 * (1 - 2 ** -52), ly: 4e-5 };
+    drawMarks(context, 400, 400, 1, { path: { record, nx: 1, ny: 1, kinds: [2] }, event: 0, node: null });
+    return said;
+  });
+  assert.deepEqual(words, ["10 µm"]);
 });
 
 await step("logarithmic axes, and other quantities along the slider", async () => {
@@ -332,6 +356,19 @@ await step("a path that yields, and what lies beside it", async () => {
   const before = await colours(steel);
   await steel.evaluate((event) => [viewer.goTo(10), viewer.goTo(event)], event);
   assert.deepEqual(await colours(steel), before);
+  // However many cells have yielded since, so many nodes are the newest.
+  const { black, newest, words } = await steel.evaluate(() => {
+    const [view] = viewer.maps;
+    view.orange.checked = false;
+    view.recolour();
+    return { black: view.pixels.filter((pixel) => pixel === view.themed.newest).length, newest: view.newestNodes(), words: view.fresh };
+  });
+  assert.ok(newest > 1 && words.endsWith(`the newest ${newest}`), words);
+  assert.equal(black, newest);
+  await steel.evaluate(() => {
+    viewer.maps[0].orange.checked = true;
+    viewer.maps[0].recolour();
+  });
   const titles = await steel.$$eval("#panels h2", (all) => all.map((one) => one.textContent));
   assert.deepEqual(titles, ["Unloading from the last state"]);
   await picture(steel, "yields.png");
@@ -350,9 +387,99 @@ await step("two records", async () => {
   two.quiet();
 });
 
+await step("two records of different sizes", async () => {
+  const two = await open("sizes.html");
+  await shown(two);
+  const [small, half] = [table("small/path.csv"), table("half/path.csv")];
+  const longer = small.load.at(-1) > half.load.at(-1) ? 0 : 1, shorter = 1 - longer;
+  await two.selectOption("#unit-area", "mm²");
+  const areas = () => two.$$eval("#charts figure:first-child .legend > span", (all) => all.filter((one) => one.textContent.includes("counted")).map((one) => one.lastElementChild.textContent));
+  // The last state of the shorter path is known on both.
+  await two.evaluate(([lead]) => viewer.goTo(viewer.paths[lead].count - 1, lead), [shorter]);
+  const read = await areas(), at = await two.evaluate(() => viewer.maps.map(({ event }) => event));
+  [small, half].forEach(({ contact_area: area }, i) => near(Number(read[i].replace(/ mm²$/, "")), area[at[i]] * 1e6, `area of ${"AB"[i]} in mm²`));
+  // The lines stand on one axis of areas.
+  const drawn = await two.evaluate(() => {
+    const [{ data, lines }] = viewer.charts;
+    return ["A counted", "B counted"].map((label) => Math.max(...data[1 + lines.findIndex((line) => line.label === label)].filter(Number.isFinite)));
+  });
+  [small, half].forEach(({ contact_area: area }, i) => near(drawn[i], area.at(-1) * 1e6, `line of ${"AB"[i]} in mm²`));
+  await two.evaluate(([lead]) => viewer.goTo(viewer.paths[lead].count - 1, lead), [longer]);
+  assert.equal((await areas())[shorter], "–", "nothing beyond the end");
+  // Parts of the area are what the slider compares.
+  await two.selectOption("#along", "area");
+  assert.equal(await two.evaluate(() => viewer.charts[0].x.in.name), "%");
+  await two.selectOption("#along", "load");
+  // Rows of a table are those of its path.
+  for (const lead of [0, 1]) {
+    const now = await two.evaluate((lead) => {
+      viewer.goTo(viewer.paths[lead].states[5].event, lead);
+      return [...document.querySelectorAll("#tables .table")].map((table) => table.querySelector(".now")?.dataset.event);
+    }, lead);
+    assert.equal(Number(now[lead]), await two.evaluate((lead) => viewer.paths[lead].states[5].event, lead));
+    assert.ok(now[1 - lead] === undefined || Number(now[1 - lead]) === (await two.evaluate((i) => viewer.maps[i].event, 1 - lead)));
+  }
+  two.quiet();
+});
+
+await step("a loop is drawn as it was run, and a leak down to where it ends", async () => {
+  const beside = await open("beside.html");
+  await shown(beside);
+  const titles = await beside.$$eval("#panels figcaption span", (all) => all.map((one) => one.textContent));
+  assert.deepEqual(titles, ["Cycles: dissipation", "Cycles: loss factor", "Leak: leak rate", "History: tangential load"]);
+  const [leak, words] = await beside.evaluate(() => {
+    const { y } = viewer.panels[1].charts[0];
+    return [{ log: y.log, unit: y.in.name }, quantity(4e-12, "m³/s")];
+  });
+  assert.deepEqual(leak, { log: true, unit: "m³/s" });
+  assert.equal(words, "4.000 × 10⁻¹² m³/s");
+  const loop = table("beside/history.csv");
+  const { bare, svg } = await beside.evaluate((loop) => {
+    const [chart] = viewer.panels[2].charts, { plot, x, y } = chart;
+    const at = (i) => [plot.valToPos(loop.displacement[i] / x.in.factor, "x", true), plot.valToPos(loop.tangential_load[i] / y.in.factor, "y", true)];
+    // Between two rows there is a line, and none where they are not neighbours.
+    const isDrawn = (i, k) => {
+      const [a, b] = [at(i), at(k)].map((point) => point.map(Math.round)), middle = [0, 1].map((axis) => Math.round((a[axis] + b[axis]) / 2));
+      const { data } = plot.ctx.getImageData(middle[0] - 2, middle[1] - 2, 5, 5);
+      return data.some((value, k) => k % 4 === 2 && value - data[k - 2] > 60 && data[k + 1] > 60);
+    };
+    return { bare: loop.load.slice(1).flatMap((_, i) => (isDrawn(i, i + 1) ? [] : [i])).concat(isDrawn(1, 3) ? ["1 to 3"] : []), svg: svgOf(chart) };
+  }, loop);
+  assert.deepEqual(bare, [], "rows that no line joins");
+  const places = svg.match(/<path d="M([^"]*)"/)[1].split("L").map((point) => Number(point.split(" ")[0]));
+  assert.equal(places.length, loop.load.length);
+  places.slice(1).forEach((place, i) => assert.equal(Math.sign(place - places[i]), Math.sign(loop.displacement[i + 1] - loop.displacement[i])));
+  await picture(beside, "beside.png");
+  beside.quiet();
+});
+
+await step("a profile can be seen and saved", async () => {
+  const profile = await open("profile.html");
+  await shown(profile);
+  const { width, height } = await profile.locator("canvas.marks").boundingBox();
+  assert.ok(Math.abs(width / height - 8) < 0.3, `${width} × ${height}`);
+  await saved(profile, profile.getByRole("button", { name: "Save map as PNG" }), (bytes) => {
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [1240, 150 + 190]);
+  });
+  profile.quiet();
+});
+
+await step("a browser that is too old is told so", async () => {
+  const context = await browser.newContext(), page = await context.newPage();
+  await page.addInitScript(() => delete Array.prototype.findLast);
+  await page.goto(pathToFileURL(path.join(folder, "flat.html")).href);
+  await page.waitForFunction(() => /too old: the page needs Chrome 97/.test(document.getElementById("fault").textContent));
+  await context.close();
+});
+
 await step("a path of one load", async () => {
   const flat = await open("flat.html");
   await shown(flat);
+  // Of states under the same load charts read the one of the slider.
+  for (const event of [0, 1, 2, 3]) {
+    await flat.evaluate((event) => viewer.goTo(event), event);
+    assert.equal(await flat.textContent("#charts .legend b"), `${(12.5 * (event + 1)).toFixed(2)} %`);
+  }
   for (const along of ["approach", "area", "mean_pressure", "load"]) {
     for (const logarithmic of [true, false]) {
       await flat.selectOption("#along", along);

@@ -105,6 +105,10 @@ await step("a text is dropped, and the page asks for its unit, its side and its 
   assert.ok(await page.isDisabled("#run"));
   await page.selectOption("#height-unit", "µm");
   await page.waitForFunction(() => /How large is the surface/.test(document.getElementById("question").textContent));
+  await page.fill("#side", "two");
+  await page.press("#side", "Enter");
+  assert.match(await question().textContent(), /“two” is no number/);
+  assert.doesNotMatch(await page.textContent("#told"), /is being read/);
   await page.fill("#side", "2");
   await page.press("#side", "Enter");
   await page.waitForFunction(() => /nodes are missing/.test(document.getElementById("question").textContent));
@@ -143,6 +147,13 @@ await step("a file of an instrument, bodies by numbers, a periodic half-space, a
   await drop("rough.x3p");
   await isReady();
   await page.selectOption("#body", "given");
+  for (const [id, name] of [["young", "E"], ["poisson", "ν"]]) {
+    const kept = await page.inputValue(`#body-${id}`);
+    await page.fill(`#body-${id}`, "");
+    await page.click("#run");
+    assert.equal(await question().textContent(), `${name} of the body is empty.`);
+    await page.fill(`#body-${id}`, kept);
+  }
   await page.fill("#body-young", "70");
   await page.fill("#body-poisson", "0.33");
   await page.selectOption("#against", "steel");
@@ -160,6 +171,13 @@ await step("what cannot be read is said", async () => {
   await drop("nothing.bin");
   await page.waitForFunction(() => document.getElementById("question").textContent.includes("nothing.bin"));
   assert.ok(await page.isDisabled("#run"));
+  // Nor is there a surface once a path has ended, whose states can be saved even if its page cannot be made.
+  await page.evaluate(() => {
+    running(true);
+    ANSWERS.fault({ of: "whole", fault: { kind: "other", message: "there is no page" } });
+  });
+  assert.ok(await page.isDisabled("#run"));
+  assert.ok(await page.isVisible("#saves"));
 });
 
 await step("what there is no room for is said before", async () => {
@@ -181,6 +199,8 @@ await step("a path of 256 × 256 nodes grows on the page, stops, and goes on", a
   const first = await page.evaluate(() => viewer.path.count);
   await page.waitForFunction((first) => viewer.path.count > first, first, { timeout: 120000 });
   await picture("web_grows.png");
+  await drop("matrix.txt", "text/plain");
+  assert.match(await question().textContent(), /A path is running/);
   await page.click("#stop");
   await page.waitForSelector("#go-on", { state: "visible", timeout: 120000 });
   const stopped = await page.evaluate(() => viewer.path.count);
