@@ -319,6 +319,10 @@ impl<'a> SlipHistory<'a> {
             self.slide(top, &below, &front, Part { load, front: reach.min(load) })?;
             (fall, change) = left(part, fall, change);
         }
+        // What is less than rounding of the step falls as well.
+        if self.load.load > target.load {
+            self.cut(target);
+        }
         Ok(())
     }
 
@@ -335,7 +339,7 @@ impl<'a> SlipHistory<'a> {
     fn slide(&mut self, top: f64, below: &Piece, front: &BedState, end: Part) -> Result<(), Error> {
         let load = self.bed.at_load(end.load)?;
         let reached = self.bed.at_load(end.front)?;
-        let work = friction_work([&self.load, &load], [front, &reached]);
+        let work = friction_work(self.bed, [&self.load, &load], [front, &reached]);
         let scale = self.friction.displacement_per_approach() * (top - below.ratio).abs();
         self.dissipation += scale * work;
         self.replace(top, reached, load);
@@ -374,13 +378,13 @@ impl<'a> SlipHistory<'a> {
 /// \int_{s_1}^{s_0} \left[ (P - s)\, \mathrm{d}\delta(s) - (\delta(P) - \delta(s))\, \mathrm{d}s \right] \ge 0
 /// ```
 /// times κ|Δλ| and the coefficient it is the work of friction: nodes beyond the front slip by κ|Δλ| r₂ dδ under μp.
-fn friction_work([p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) -> f64 {
+fn friction_work(bed: &Bed, [p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) -> f64 {
     let (loads, approaches) = (s0.load - s1.load, s0.approach - s1.approach);
     if loads <= 0.0 {
         return 0.0;
     }
     let fixed = (p0.load - s0.load) * approaches - (p0.approach - s0.approach) * loads;
-    let (above, under) = (before_end(s1, s0), loads * approaches - before_end(s1, s0));
+    let (above, under) = (before_end(bed, s1, s0), loads * approaches - before_end(bed, s1, s0));
     // P(s) moves: dP/ds = change/(s₁ − s₀).
     let change = p1.load - p0.load;
     let moving = if change == 0.0 {
@@ -388,17 +392,34 @@ fn friction_work([p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) -> f64 {
     } else {
         let [low, high] = if change < 0.0 { [p1, p0] } else { [p0, p1] };
         let all = (high.load - low.load) * (high.approach - low.approach);
-        let carried =
-            if change < 0.0 { all - before_end(low, high) } else { before_end(low, high) };
+        let carried = if change < 0.0 {
+            all - before_end(bed, low, high)
+        } else {
+            before_end(bed, low, high)
+        };
         change / loads * above - carried * (loads / change)
     };
     (fixed + above - under + moving).max(0.0)
 }
 
-/// ∫ (s₁ − s) dδ(s) from s₀ up to s₁, by the energy ∫ s dδ: differences, which rounding does not leave where the
-/// integral can be.
-fn before_end(start: &BedState, end: &BedState) -> f64 {
+/// ∫ (s₁ − s) dδ(s) from s₀ up to s₁: over a few intervals as a sum of positive terms, over many by the energy ∫ s dδ, of
+/// which rounding leaves less than there is of so small a step.
+fn before_end(bed: &Bed, start: &BedState, end: &BedState) -> f64 {
+    let inside = start.interval + 1..end.interval + 1;
+    if inside.len() <= FEW_KNOTS {
+        let knots = inside.map(|knot| (bed.loads()[knot], bed.approaches()[knot]));
+        let (mut sum, mut before) = (0.0, (start.load, start.approach));
+        for next in knots.chain([(end.load, end.approach)]) {
+            let left = (end.load - before.0) + (end.load - next.0);
+            sum += 0.5 * left * (next.1 - before.1);
+            before = next;
+        }
+        return sum.max(0.0);
+    }
     let (loads, approaches) = (end.load - start.load, end.approach - start.approach);
     let rest = end.load * approaches - (end.energy - start.energy);
     rest.clamp(0.0, (loads * approaches).max(0.0))
 }
+
+/// Intervals that are summed one by one.
+const FEW_KNOTS: usize = 16;

@@ -177,6 +177,48 @@ fn tangential_loads_of_rounding_end() {
     }
 }
 
+/// Less than rounding of a step is taken off as well, so that nothing is left in contact without a load.
+#[test]
+fn no_load_is_none() {
+    let (_, history) = path(1);
+    let bed = Bed::new(&history).unwrap();
+    let load = 0.6 * bed.last_load();
+    for tiny in [1e-20, 1e-140, 1e-250] {
+        let mut joint = SlipHistory::new(&bed, friction());
+        joint.to(tiny * load, 0.1 * MU * tiny * load).unwrap();
+        joint.to(load, 0.0).unwrap();
+        joint.to(load, 1e-9 * MU * load).unwrap();
+        let state = joint.to(0.0, 0.0).unwrap();
+        assert_eq!((state.load, state.stick_load, state.tangential_load), (0.0, 0.0, 0.0));
+        assert!(joint.superposition().unwrap().pieces().is_empty());
+    }
+}
+
+/// Where P falls by less and less, and T as far as friction lets it, as much is lost as at constant P.
+#[test]
+fn dissipations_of_small_steps_of_the_load_are_not_rounding() {
+    let (_, history) = path(1);
+    let bed = Bed::new(&history).unwrap();
+    let load = 0.6 * bed.last_load();
+    let joint = PartialSlip::new(&bed, load, friction()).unwrap();
+    for turn in [0.5, 1e-2, 1e-4] {
+        let force = turn * MU * load;
+        let expected = joint.cycle(force).unwrap().dissipation;
+        for change in [0.0, 1e-15, 1e-12, -1e-12, 1e-10, 1e-8, -1e-8] {
+            let mut history = SlipHistory::new(&bed, friction());
+            history.to(load, 0.0).unwrap();
+            history.to(load, force).unwrap();
+            let before = history.dissipation();
+            // Half of a cycle.
+            history.to(load * (1.0 - change), -force).unwrap();
+            let lost = history.dissipation() - before;
+            // What P changes by over what slips of it, and rounding of sums over μPδ.
+            let allowed = 10.0 * change.abs() / turn + 1e-11 / turn.powi(2);
+            assert!(relative(2.0 * lost, expected) < allowed, "{turn} {change}: {lost}");
+        }
+    }
+}
+
 /// Masing: a branch behind a turn is the first loading, twice as large in both directions.
 #[test]
 fn branches_are_the_first_loading_doubled() {
