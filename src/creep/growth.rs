@@ -107,7 +107,7 @@ impl<'a> Growth<'a> {
     pub(super) fn times(&self, until: f64) -> Vec<f64> {
         let mut times = Vec::new();
         let corners = self.load.corners();
-        self.walk(until, |stretch| {
+        self.walk((until, f64::INFINITY), |stretch| {
             let start = corners[stretch.corner].0 + stretch.from;
             times.resize(times.len().max(stretch.knot + 1), start);
         });
@@ -130,7 +130,7 @@ impl<'a> Growth<'a> {
         let mut carried: Vec<f64> = Vec::new();
         let corners = self.load.corners();
         let mut rate: Option<(usize, ExponentialSum)> = None;
-        self.walk(until, |stretch| {
+        self.walk((until, greatest), |stretch| {
             carried.resize(carried.len().max(stretch.knot + 1), 0.0);
             let start = corners[stretch.corner].0;
             carried[stretch.knot] += if stretch.jump > 0.0 {
@@ -169,8 +169,39 @@ impl<'a> Growth<'a> {
         sum
     }
 
-    /// Goes through the growth up to a time, from knot to knot and from corner to corner.
-    fn walk(&self, until: f64, mut visit: impl FnMut(Stretch)) {
+    /// The same up to an effective load: of a jump at that time as much as leads to it.
+    pub(super) fn carried_by(&self, kernel: &Kernel, time: f64, contact: (f64, f64)) -> f64 {
+        let (until, effective_load) = contact;
+        let reached = self.load.place(until).map_or(0.0, |place| self.load.response(place).0);
+        let beyond = (reached - effective_load).max(0.0);
+        self.carried(kernel, time, until) - beyond * kernel.at(time - until)
+    }
+
+    /// The jump within which the contact that is left of it carries a load at a time: when it was, and the effective load
+    /// up to which it is left. `None` if contact that came before the jump or after it makes the difference.
+    pub(super) fn within_jump(&self, kernel: &Kernel, time: f64, load: f64) -> Option<(f64, f64)> {
+        let mut before = 0.0;
+        for (corner, &(start, _)) in self.load.corners().iter().enumerate() {
+            if start > time || before > load {
+                return None;
+            }
+            let (jump, left) = (self.load.response_to_jump(corner), kernel.at(time - start));
+            if jump > 0.0 && load < before + jump * left {
+                let reached = self.load.response(Place { corner, since: 0.0 }).0 - jump;
+                return Some((start, reached + ((load - before) / left).min(jump)));
+            }
+            before += jump * left;
+            let length = self.load.duration(corner).min(time - start);
+            if length > 0.0 {
+                let after = time - (start + length);
+                before += kernel.over(&self.load.rate(corner), (0.0, length), after);
+            }
+        }
+        None
+    }
+
+    /// Goes through the growth up to a time, from knot to knot and from corner to corner; of a jump up to a load.
+    fn walk(&self, (until, greatest): (f64, f64), mut visit: impl FnMut(Stretch)) {
         let (load, knots) = (&self.load, self.knots);
         let (mut knot, mut reached) = (0, 0.0_f64);
         for (corner, &(start, _)) in load.corners().iter().enumerate() {
@@ -178,6 +209,7 @@ impl<'a> Growth<'a> {
                 return;
             }
             let after = load.response(Place { corner, since: 0.0 }).0;
+            let after = if load.jump(corner) > 0.0 { after.min(greatest) } else { after };
             // Up to a jump.
             loop {
                 let next = knots.get(knot + 1).copied().filter(|next| *next <= after);

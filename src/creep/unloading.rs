@@ -44,7 +44,8 @@ pub struct Unloading<'a, 'b> {
     creep: &'b Creep<'a>,
     derivative: Kernel,
     recession: Option<Recession>,
-    returns: Option<f64>,
+    /// When the contact grows again, and whether it does at once.
+    returns: Option<(f64, bool)>,
 }
 
 /// The contact at a time of unloading.
@@ -82,7 +83,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
     /// When the contact grows again: until then it is a single unloading.
     #[must_use]
     pub fn returns(&self) -> Option<f64> {
-        self.returns
+        self.returns.map(|(time, _)| time)
     }
 
     /// The contact just after a time.
@@ -96,17 +97,12 @@ impl<'a, 'b> Unloading<'a, 'b> {
             let contact = self.creep.bed().at_load(state.effective_load)?;
             return Ok(UnloadingState { time, load: state.load, contact_time: time, contact });
         };
-        if let Some(returns) = self.returns.filter(|returns| time > *returns) {
-            return Err(CreepError::ContactReturns { time: returns }.into());
+        let has_returned =
+            |(from, is_jump): &(f64, bool)| time > *from || (*is_jump && time == *from);
+        if let Some((time, _)) = self.returns.filter(has_returned) {
+            return Err(CreepError::ContactReturns { time }.into());
         }
-        let contact_time = self.contact_time(recession, time);
-        let growth = self.creep.growth();
-        // Just before a jump that ends the growth it is as large as ever.
-        let effective_load = if contact_time < recession.time {
-            growth.at(contact_time)
-        } else {
-            recession.effective_load
-        };
+        let (contact_time, effective_load) = self.contact(recession, time);
         let contact = self.creep.bed().at_load(effective_load)?;
         Ok(UnloadingState { time, load: self.creep.load(time), contact_time, contact })
     }
@@ -135,6 +131,23 @@ impl<'a, 'b> Unloading<'a, 'b> {
         self.recession.filter(|r| time > r.time || (r.is_jump && time == r.time))
     }
 
+    /// t₁ and the effective load of the contact. What was put on at once is taken off in part.
+    fn contact(&self, recession: Recession, time: f64) -> (f64, f64) {
+        let (growth, load) = (self.creep.growth(), self.creep.load(time));
+        let within = growth.within_jump(self.creep.kernel(), time, load);
+        if let Some(found) = within.filter(|found| found.0 <= recession.time) {
+            return found;
+        }
+        let contact_time = self.contact_time(recession, time);
+        // Just before a jump that ends the growth it is as large as ever.
+        let effective_load = if contact_time < recession.time {
+            growth.at(contact_time)
+        } else {
+            recession.effective_load
+        };
+        (contact_time, effective_load)
+    }
+
     /// t₁: the contact of later times would carry more than the load.
     fn contact_time(&self, recession: Recession, time: f64) -> f64 {
         let (growth, kernel) = (self.creep.growth(), self.creep.kernel());
@@ -151,7 +164,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
     /// Between corners the load that a contact carries is convex in time and W is linear, so that the contact, once it
     /// recedes, goes on to do so up to the next corner. Behind a corner it does if the load falls at least as fast as
     /// relaxation takes it from the contact.
-    fn find_return(&self, recession: Recession) -> Option<f64> {
+    fn find_return(&self, recession: Recession) -> Option<(f64, bool)> {
         let growth = self.creep.growth();
         let load = growth.load();
         for (corner, &(time, _)) in load.corners().iter().enumerate() {
@@ -160,17 +173,17 @@ impl<'a, 'b> Unloading<'a, 'b> {
                 continue;
             }
             if load.jump(corner) > 0.0 {
-                return Some(time);
+                return Some((time, true));
             }
             if load.duration(corner) == 0.0 {
                 continue;
             }
-            let contact_time = self.contact_time(recession, time);
-            let relaxes = growth.carried(&self.derivative, time, contact_time);
+            let contact = self.contact(recession, time);
+            let relaxes = growth.carried_by(&self.derivative, time, contact);
             let rate = load.slope(corner);
             let is_none = load.value(Place { corner, since: 0.0 }) <= 0.0 && rate <= 0.0;
             if rate > relaxes && !is_none {
-                return Some(time);
+                return Some((time, false));
             }
         }
         None

@@ -123,3 +123,52 @@ fn a_hold_after_unloading_brings_contact_back() {
     let states = contact.follow(&ControlHistory::Load(steps), &times).unwrap();
     assert_eq!(states[1000].contact_nodes, state.contact.contact_nodes);
 }
+
+/// A load that was put on at once is taken off: the contact is that of a part of the jump, as in the bed, and its
+/// pressure carries the load.
+#[test]
+fn what_was_put_on_at_once_is_taken_off_in_part() {
+    let (_, history) = history();
+    let bed = Bed::new(&history).unwrap();
+    let body = Prony::relaxation(0.2, &[(1.0, 0.3), (0.1, 0.5)]).unwrap();
+    let load = bed.loads()[50];
+    let corners = PiecewiseLinear::step(load).unwrap().hold(0.5).unwrap().to(0.0, 1.0).unwrap();
+    let creep = Creep::new(&bed, &body, &corners).unwrap();
+    let unloading = Unloading::new(&creep).unwrap();
+    assert_eq!(unloading.returns(), None);
+    let steps = 400;
+    let times: Vec<f64> = (0..=3 * steps / 2).map(|k| f64::from(k) / f64::from(steps)).collect();
+    let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+    let states = contact.follow(&ControlHistory::Load(corners), &times).unwrap();
+    let mut within = 0;
+    for state in states.iter().filter(|state| state.time > 0.5) {
+        let found = unloading.at(state.time).unwrap();
+        within += usize::from(found.contact_time == 0.0 && found.contact.load < load);
+        let carried = unloading.pressure(state.time, usize::MAX).unwrap().load();
+        assert!((carried - state.load).abs() < 1e-10 * load, "{state:?}: {carried}");
+        // Of steps of 1/400.
+        let nodes = found.contact.contact_nodes.abs_diff(state.contact_nodes);
+        assert!(nodes <= 1, "{state:?}: {found:?}");
+    }
+    assert!(within > 100, "{within}");
+}
+
+/// Just after a jump up the contact has returned.
+#[test]
+fn contact_returns_with_a_jump() {
+    let (_, history) = history();
+    let bed = Bed::new(&history).unwrap();
+    let body = Prony::relaxation(0.2, &[(1.0, 0.8)]).unwrap();
+    let load = bed.loads()[50];
+    let corners = PiecewiseLinear::ramp(load, 1.0).unwrap().to(0.0, 1.0).unwrap();
+    let corners = corners.jump(0.5 * load).unwrap();
+    let creep = Creep::new(&bed, &body, &corners).unwrap();
+    let unloading = Unloading::new(&creep).unwrap();
+    assert_eq!(unloading.returns(), Some(2.0));
+    assert!(unloading.at(2.0_f64.next_down()).is_ok());
+    let refused = unloading.at(2.0);
+    assert!(matches!(
+        refused,
+        Err(Error::Creep(CreepError::ContactReturns { time })) if time == 2.0
+    ));
+}
