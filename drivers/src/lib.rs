@@ -14,9 +14,13 @@
 //! | [`large_loads()`] | the same on more nodes of a half-space | the same |
 //! | [`parsers()`] | files of heights, hostile ones most of all | what is read after it was written again |
 //! | [`records()`] | paths on disk, tampered with | the record before it was written, and dense fields |
+//! | [`creep()`] | a viscoelastic contact, and steps of load or approach that come back | dense gaps with a memory of each node, and convolutions |
+//! | [`slip()`] | a joint, and steps of both loads that come back | springs with sliders from event to event |
 
 mod adhesion;
 mod compare;
+mod creep;
+mod creep_forms;
 mod dense;
 mod draw;
 mod edits;
@@ -32,6 +36,8 @@ mod problem;
 mod records;
 mod refusal;
 mod scratch;
+mod slip;
+mod springs;
 mod surfaces;
 mod variant;
 mod verdict;
@@ -39,11 +45,13 @@ mod walk;
 mod yielding;
 
 pub use adhesion::adhesion;
+pub use creep::creep;
 pub use fixed_loads::{fixed_loads, large_loads};
 pub use large_contacts::large_contacts;
 pub use parsers::parsers;
 pub use paths::paths;
 pub use records::records;
+pub use slip::slip;
 pub use verdict::{Tally, Verdict, Violation};
 pub use yielding::yielding;
 
@@ -53,14 +61,16 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub type Driver = fn(&[u8]) -> Verdict;
 
 /// All drivers by their names, which are those of the fuzz targets as well.
-pub const DRIVERS: [(&str, Driver); 8] = [
+pub const DRIVERS: [(&str, Driver); 10] = [
     ("adhesion", adhesion),
+    ("creep", creep),
     ("fixed_loads", fixed_loads),
     ("large_contacts", large_contacts),
     ("large_loads", large_loads),
     ("parsers", parsers),
     ("paths", paths),
     ("records", records),
+    ("slip", slip),
     ("yielding", yielding),
 ];
 

@@ -70,6 +70,11 @@ fn adhesion() -> Result<(), Violation> {
 }
 
 #[test]
+fn creep() -> Result<(), Violation> {
+    replay("creep")
+}
+
+#[test]
 fn fixed_loads() -> Result<(), Violation> {
     replay("fixed_loads")
 }
@@ -97,6 +102,11 @@ fn paths() -> Result<(), Violation> {
 #[test]
 fn records() -> Result<(), Violation> {
     replay("records")
+}
+
+#[test]
+fn slip() -> Result<(), Violation> {
+    replay("slip")
 }
 
 #[test]

@@ -108,6 +108,16 @@ fn records_are_right() -> Result<(), Violation> {
     compared(drive("records_are_right", asperity_drivers::records, 100, 400)?)
 }
 
+#[test]
+fn creep_is_right() -> Result<(), Violation> {
+    compared(drive("creep_is_right", asperity_drivers::creep, 200, 400)?)
+}
+
+#[test]
+fn slip_is_right() -> Result<(), Violation> {
+    compared(drive("slip_is_right", asperity_drivers::slip, 400, 400)?)
+}
+
 /// Cases that an earlier version failed. As the drivers change what they make of their bytes, so do these.
 #[test]
 fn earlier_failures_are_mended() -> Result<(), Violation> {
