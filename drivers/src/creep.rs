@@ -26,7 +26,7 @@ const LONG: f64 = 100.0;
 /// Draws a surface on a half-space, a part of its path, a body, and steps of load or approach in which equal values
 /// return. Behind each step the pressures are a contact of the present gaps, which a dense matrix and a memory of each
 /// node make of them: no other pressures are. Then loads and approaches over time in closed form, compared with
-/// [convolutions](creep_forms) and with the bed.
+/// convolutions and with the bed.
 ///
 /// # Errors
 ///

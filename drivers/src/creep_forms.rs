@@ -216,12 +216,23 @@ fn creep(bed: &Bed<'_>, body: &Prony, load: &PiecewiseLinear, draw: &mut Draw<'_
     }
     let reached = found.times();
     ensure!(reached.windows(2).all(|pair| pair[0] <= pair[1]), "times of knots: {reached:?}");
+    let late = late(load, &reached);
     for (time, knot) in reached.iter().zip(bed.loads()) {
         let (expected, allowed) = effective(body, &pieces, *time);
+        let allowed = allowed * (1.0 + late / ROUNDING);
         ensure!(expected >= knot - allowed, "{knot:e} is reached at {time:e}, but {expected:e}");
     }
     unloading(&found, load, &mut tally, &times(load, body, draw))?;
     Ok(tally)
+}
+
+/// What times that are rounded make of a load on the steepest ramp.
+fn late(load: &PiecewiseLinear, times: &[f64]) -> f64 {
+    let ramps = load.corners().windows(2).map(|pair| pair[1].0 - pair[0].0);
+    let steepest = ramps.filter(|ramp| *ramp > 0.0).fold(f64::INFINITY, f64::min);
+    let latest = times.iter().filter(|time| time.is_finite());
+    let latest = latest.fold(load.end().abs(), |most, time| most.max(time.abs()));
+    16.0 * f64::EPSILON * latest / steepest
 }
 
 /// Of unloading what holds of any.
@@ -235,24 +246,21 @@ fn unloading(
         return Ok(());
     };
     let greatest = load.corners().iter().fold(0.0_f64, |most, corner| most.max(corner.1));
-    // The time of a contact is rounded, on the steepest ramp too.
-    let ramps = load.corners().windows(2).map(|pair| pair[1].0 - pair[0].0);
-    let steepest = ramps.filter(|ramp| *ramp > 0.0).fold(f64::INFINITY, f64::min);
-    let latest = times.iter().fold(0.0_f64, |most, time| most.max(time.abs()));
-    let late = 16.0 * f64::EPSILON * latest / steepest;
+    let late = late(load, times);
     let mut before = f64::INFINITY;
     for &time in times.iter().filter(|time| **time > recession.time) {
         let during = |violation: Violation| violation.during(format!("unloading at {time:e}"));
         match unloading.at(time) {
             Ok(state) => {
                 let contact = state.contact.load;
-                let most = recession.effective_load.min(before) * (1.0 + 1e-9);
+                let most = recession.effective_load.min(before) * (1.0 + 1e-9 + late);
                 ensure!(contact <= most, "{contact:e} of {most:e} in contact at {time:e}");
                 ensure!(state.contact_time <= recession.time, "{state:?} behind {recession:?}");
                 before = contact;
+                ensure!(state.load > 0.0 || contact == 0.0, "{contact:e} in contact at {time:e}");
                 let carried = unloading.pressure(time, usize::MAX).map_err(|e| refused(&e))?;
-                let ends = carried.pieces().iter().all(|piece| piece.weight >= -1e-9);
-                ensure!(ends, "tension at {time:e}: {carried:?}");
+                let is_pressed = carried.pieces().iter().all(|piece| piece.weight >= -1e-9);
+                ensure!(is_pressed, "tension at {time:e}: {carried:?}");
                 let expected = load.value_at(time);
                 let allowed = (1e-8 + late) * greatest;
                 tally.close("load", carried.load(), expected, allowed).map_err(during)?;

@@ -22,7 +22,7 @@ const UNDERFLOWS: f64 = 1e-290;
 
 /// Draws a surface on a half-space, a part of its path, friction, and steps of both loads in which equal and nearly
 /// equal values return. Displacement, forces of all springs, stored and lost energies are compared with
-/// [springs](crate::springs) from event to event; refusals have to be deserved and change nothing; cycles at constant
+/// springs from event to event; refusals have to be deserved and change nothing; cycles at constant
 /// load are those of a history.
 ///
 /// # Errors
@@ -196,7 +196,9 @@ impl Trial<'_> {
     fn step(&mut self, load: f64, force: f64) -> Result<(), Violation> {
         if load.is_finite() && load > self.springs.greatest_load() {
             // Beyond what is compared.
-            let _ = self.joint.clone().to(load, force);
+            if let Ok(state) = self.joint.clone().to(load, force) {
+                ensure!(state.load == load, "the load is {:e}", state.load);
+            }
             return Ok(());
         }
         let before = (self.joint.state(), self.joint.dissipation());

@@ -134,6 +134,11 @@ impl<'a, 'b> Unloading<'a, 'b> {
     /// t₁ and the effective load of the contact. What was put on at once is taken off in part.
     fn contact(&self, recession: Recession, time: f64) -> (f64, f64) {
         let (growth, load) = (self.creep.growth(), self.creep.load(time));
+        if load <= 0.0 {
+            // What is left of the first contact may have underflowed.
+            let begin = growth.load().corners().first().map_or(0.0, |corner| corner.0);
+            return (begin.min(recession.time), 0.0);
+        }
         let within = growth.within_jump(self.creep.kernel(), time, load);
         if let Some(found) = within.filter(|found| found.0 <= recession.time) {
             return found;

@@ -271,6 +271,8 @@ impl<'a> SlipHistory<'a> {
             self.slide(top, &below, &front, end)?;
             (rise, change) = if part < 1.0 { left(part, rise, change) } else { (0.0, 0.0) };
         }
+        // What has underflowed of the step is added as well.
+        self.load = target;
         Ok(())
     }
 

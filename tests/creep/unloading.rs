@@ -172,3 +172,16 @@ fn contact_returns_with_a_jump() {
         Err(Error::Creep(CreepError::ContactReturns { time })) if time == 2.0
     ));
 }
+
+/// No load has no contact, however little is left of the pressures of a fluid that flowed for long.
+#[test]
+fn no_load_is_no_contact() {
+    let (_, history) = history();
+    let bed = Bed::new(&history).unwrap();
+    let body = Prony::relaxation(0.0, &[(1.0, 1.0)]).unwrap();
+    let load = 1e-6 * bed.loads()[50];
+    let corners = PiecewiseLinear::ramp(load, 1.0).unwrap().hold(2000.0).unwrap().jump(0.0);
+    let creep = Creep::new(&bed, &body, &corners.unwrap()).unwrap();
+    let unloading = Unloading::new(&creep).unwrap();
+    assert_eq!(unloading.at(2002.0).unwrap().contact.load, 0.0);
+}
