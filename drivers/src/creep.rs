@@ -76,8 +76,16 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         let contact = ViscoelasticBed::new(&bed, &body)
             .map_err(|error| Violation::new(format!("it was refused: {error}")))?;
         let memory = Memory::new(&body, dense.nodes());
-        let mut trial =
-            Trial { bed: &bed, path: &mut path, contact, memory, dense: &dense, error, inverse };
+        let mut trial = Trial {
+            bed: &bed,
+            path: &mut path,
+            contact,
+            memory,
+            dense: &dense,
+            error,
+            inverse,
+            greatest: [0.0; 2],
+        };
         trial.walk(draw, &scale).map_err(context)?
     };
     tally += creep_forms::run(&bed, &body, draw, &scale).map_err(context)?;
@@ -203,6 +211,8 @@ struct Trial<'a, 'b> {
     /// Error of a solution relative to itself, and the norm of the inverse.
     error: f64,
     inverse: f64,
+    /// The greatest effective load and lengths so far: what is left of them has their rounding.
+    greatest: [f64; 2],
 }
 
 impl Trial<'_, '_> {
@@ -357,6 +367,8 @@ impl Trial<'_, '_> {
         let own = dense.own_length(state.approach) + dense.gauge() * effective_sum;
         let gap = dense.gap() + displacement - DVector::from_element(dense.nodes(), own);
         let lengths = own.abs() + dense.gap().max() + lengths;
+        self.greatest = [self.greatest[0].max(effective_sum), self.greatest[1].max(lengths)];
+        let [greatest, lengths] = self.greatest;
         let allowed = (16.0 * self.error + ROUNDING) * lengths;
         let of_pressure = self.inverse * allowed / memory.body.instantaneous_compliance();
         let order = self.path.contact_order();
@@ -383,7 +395,7 @@ impl Trial<'_, '_> {
         let nodes = dense.nodes() as f64;
         tally.close("load", dense.own_sum(state.load), sum, nodes * of_pressure)?;
         let found = dense.own_sum(state.effective_load);
-        let of_sum = nodes * self.inverse * allowed + 1e-11 * effective_sum;
+        let of_sum = nodes * self.inverse * allowed + 1e-11 * greatest;
         tally.close("effective load", found, effective_sum, of_sum)?;
         tally.close("mean gap", dense.own_length(state.mean_gap), gap.mean(), allowed)?;
         self.memory = memory;
