@@ -9,6 +9,7 @@ use nalgebra::DVector;
 use crate::creep_forms;
 use crate::dense::Dense;
 use crate::draw::Draw;
+use crate::instants::{Scale, duration, value};
 use crate::kernels;
 use crate::problem::{Drawn, Sample};
 use crate::refusal::Circumstances;
@@ -18,8 +19,6 @@ use crate::verdict::{Tally, Verdict, Violation, ensure};
 const WELL_CONDITIONED: f64 = 1e-9;
 /// What a bed takes for rounding of a compression is 10⁻¹².
 const ROUNDING: f64 = 1e-11;
-/// What is drawn is no less.
-const LEAST: f64 = 1e-250;
 /// Steps so many times the shortest retardation time may bring out negative pressures, however they are divided.
 const LONG: f64 = 100.0;
 
@@ -90,13 +89,6 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     };
     tally += creep_forms::run(&bed, &body, draw, &scale).map_err(context)?;
     Ok(tally)
-}
-
-/// What loads, approaches and times are parts of.
-pub(crate) struct Scale {
-    pub(crate) load: f64,
-    pub(crate) approach: f64,
-    pub(crate) time: f64,
 }
 
 /// A body and one of its times; `None` if it is none in double precision.
@@ -410,32 +402,4 @@ impl Trial<'_, '_> {
         self.memory = memory;
         Ok(())
     }
-}
-
-/// How long a step is.
-pub(crate) fn duration(draw: &mut Draw<'_>, unit: f64, last: f64) -> f64 {
-    match draw.whole(0, 7) {
-        0 | 1 => 0.0,
-        2 => last,
-        3 => unit * draw.decades(-12.0, -3.0),
-        4 if draw.once_in(4) => unit * draw.decades(2.0, 9.0),
-        _ => unit * draw.decades(-3.0, 1.0),
-    }
-}
-
-/// One of these values, one near them, none, or that of a knot; `None` for any other.
-pub(crate) fn value(draw: &mut Draw<'_>, values: [f64; 2], knots: &[f64]) -> Option<f64> {
-    let [earlier, now] = values;
-    let value = match draw.whole(0, 9) {
-        0 => earlier,
-        1 => now,
-        2 => earlier.next_up(),
-        3 => earlier.next_down(),
-        4 => now * (1.0 - draw.decades(-15.0, -3.0)),
-        5 => 0.0,
-        6 => *knots.get(draw.whole(0, knots.len().max(1) - 1))?,
-        _ => return None,
-    };
-    // Numbers that have lost their digits are none.
-    Some(if value.abs() < LEAST { 0.0 } else { value })
 }

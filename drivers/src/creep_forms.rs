@@ -6,8 +6,8 @@ use asperity::creep::{
 };
 use asperity::{BedError, CreepError, Error};
 
-use crate::creep::{Scale, duration, value};
 use crate::draw::Draw;
+use crate::instants::{Scale, duration, value};
 use crate::verdict::{Tally, Verdict, Violation, ensure};
 
 /// Rounding of convolutions of some corners and terms, and what counts as that of the last knot is 10⁻¹².

@@ -26,6 +26,7 @@ mod draw;
 mod edits;
 mod files;
 mod fixed_loads;
+mod instants;
 mod judge;
 mod kernels;
 mod large_contacts;

@@ -38,11 +38,12 @@ macro_rules! real {
 }
 
 /// The numbers of every state; NaN stands for a stiffness that there is not.
-const REALS: [Real; 9] = [
+const REALS: [Real; 10] = [
     real!("approach", contact.approach),
     real!("load", contact.load),
     real!("contact_area", contact.contact_area),
     real!("area_fraction", contact.contact_area_fraction),
+    real!("nominal_area", contact.nominal_area),
     real!("mean_gap", contact.mean_gap),
     real!("contact_stiffness", optional contact_stiffness),
     real!("interfacial_stiffness", optional interfacial_stiffness),
