@@ -38,18 +38,20 @@ macro_rules! real {
 }
 
 /// The numbers of every state; NaN stands for a stiffness that there is not.
-const REALS: [Real; 10] = [
+const REALS: [Real; 9] = [
     real!("approach", contact.approach),
     real!("load", contact.load),
     real!("contact_area", contact.contact_area),
     real!("area_fraction", contact.contact_area_fraction),
-    real!("nominal_area", contact.nominal_area),
     real!("mean_gap", contact.mean_gap),
     real!("contact_stiffness", optional contact_stiffness),
     real!("interfacial_stiffness", optional interfacial_stiffness),
     real!("energy", contact.energy),
     real!("approach_error", approach_error),
 ];
+
+/// The same for all, and no column.
+const NOMINAL_AREA: Real = real!("nominal_area", contact.nominal_area);
 
 /// A number of what has yielded.
 struct Plastic {
@@ -445,7 +447,7 @@ pub(crate) fn table<'py>(py: Python<'py>, states: &[LoadingState]) -> Fallible<B
     table.set_item("yielded_nodes", column(py, yielded.collect()))?;
     let events: Vec<i8> = states.iter().map(|s| s.event.code().cast_signed()).collect();
     table.set_item("event", column(py, events))?;
-    for real in &REALS {
+    for real in REALS.iter().chain([&NOMINAL_AREA]) {
         table.set_item(real.name, column(py, states.iter().map(real.get).collect()))?;
     }
     for plastic in &PLASTIC {
@@ -484,7 +486,7 @@ fn states(table: &Bound<'_, PyDict>) -> Fallible<Vec<LoadingState>> {
         let node = (whole(ix[k]), whole(iy[k]));
         states.push(LoadingState::new(whole(step[k]), state::event(events[k])?, node, contact));
     }
-    for real in &REALS {
+    for real in REALS.iter().chain([&NOMINAL_AREA]) {
         for (state, value) in states.iter_mut().zip(values::<f64>(table, real.name)?) {
             (real.set)(state, value);
         }
