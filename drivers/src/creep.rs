@@ -207,9 +207,6 @@ struct Trial<'a, 'b> {
     greatest: [f64; 2],
 }
 
-/// By how much effective loads of a step may differ from those of its parts: these follow the load more closely.
-const IN_PARTS: f64 = 0.1;
-
 impl Trial<'_, '_> {
     fn walk(&mut self, draw: &mut Draw<'_>, scale: &Scale) -> Verdict {
         let mut tally = Tally::default();
@@ -317,29 +314,28 @@ impl Trial<'_, '_> {
     /// Whether an error is deserved: increments in contact are compressed in full, so that the effective load, and the
     /// approach, are no less than those of the path with this contact.
     fn judge(&self, duration: f64, control: Control, error: &Error) -> Result<(), Violation> {
+        let shortest = self.memory.body.relaxation_terms().first();
+        let is_long = shortest.is_some_and(|term| duration > LONG * term.time);
         let deserved = match (error, control) {
-            (Error::Creep(CreepError::BedEnds { time, .. }), Control::Load(load)) => {
-                // On the way where pressures would become negative: a step is halved then, and its parts are other
-                // steps than the one that is looked at here.
-                let before = self.contact.state();
-                let part = if duration > 0.0 { (time - before.time) / duration } else { 1.0 };
-                let load = before.load + part * (load - before.load);
-                let slack = if part < 1.0 - 1e-9 { IN_PARTS } else { 1e-9 };
-                let nodes = self.dense.nodes() as f64;
-                let sum = self.dense.own_sum(load);
-                // As if each node carried its part.
-                let pressure = DVector::from_element(self.dense.nodes(), sum / nodes);
-                let effective = self.memory.behind(part * duration, pressure).effective().sum();
-                effective >= self.dense.own_sum(self.bed.last_load()) * (1.0 - slack)
+            // One that is divided may lead beyond the path on its way.
+            (Error::Creep(CreepError::BedEnds { .. }), _) if is_long => true,
+            (Error::Creep(CreepError::BedEnds { .. }), Control::Load(load)) => {
+                let nodes = self.dense.nodes();
+                let before = self.contact.state().load;
+                let end = self.dense.own_sum(self.bed.last_load()) * (1.0 - 1e-9);
+                // Where it is divided, anywhere on the way.
+                (1..=64).map(|part| f64::from(part) / 64.0).any(|part| {
+                    let sum = self.dense.own_sum(before + part * (load - before));
+                    // As if each node carried its part.
+                    let pressure = DVector::from_element(nodes, sum / nodes as f64);
+                    self.memory.behind(part * duration, pressure).effective().sum() >= end
+                })
             }
             (Error::Creep(CreepError::BedEnds { .. }), Control::Approach(approach)) => {
                 let end = self.bed.approaches().last().copied().unwrap_or(0.0);
                 approach >= end * (1.0 - 1e-9)
             }
-            (Error::Creep(CreepError::StepFails { .. }), _) => {
-                let shortest = self.memory.body.relaxation_terms().first();
-                shortest.is_some_and(|term| duration > LONG * term.time)
-            }
+            (Error::Creep(CreepError::StepFails { .. }), _) => is_long,
             _ => false,
         };
         ensure!(deserved, "it was refused: {error}");

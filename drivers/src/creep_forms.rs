@@ -167,7 +167,8 @@ fn creep(bed: &Bed<'_>, body: &Prony, load: &PiecewiseLinear, draw: &mut Draw<'_
                 before = before.max(state.effective_load);
                 tally.close("load", state.load, load.value_at(time), 0.0).map_err(during)?;
                 if let Ok(pressure) = found.pressure(time, usize::MAX) {
-                    let off = allowed / body.instantaneous_compliance();
+                    let off = allowed * (1.0 + late(load, body, &[time]) / ROUNDING);
+                    let off = off / body.instantaneous_compliance();
                     tally
                         .close("load of pressures", pressure.load(), state.load, off)
                         .map_err(during)?;
@@ -216,29 +217,33 @@ fn creep(bed: &Bed<'_>, body: &Prony, load: &PiecewiseLinear, draw: &mut Draw<'_
     }
     let reached = found.times();
     ensure!(reached.windows(2).all(|pair| pair[0] <= pair[1]), "times of knots: {reached:?}");
-    let late = late(load, &reached);
+    let late = late(load, body, &reached);
     for (time, knot) in reached.iter().zip(bed.loads()) {
         let (expected, allowed) = effective(body, &pieces, *time);
+        // It may be reached just before a jump down.
+        let jump = recession.filter(|r| r.is_jump && r.time == *time);
+        let expected = jump.map_or(expected, |r| r.effective_load.max(expected));
         let allowed = allowed * (1.0 + late / ROUNDING);
         ensure!(expected >= knot - allowed, "{knot:e} is reached at {time:e}, but {expected:e}");
     }
-    unloading(&found, load, &mut tally, &times(load, body, draw))?;
+    unloading(&found, (load, body), &mut tally, &times(load, body, draw))?;
     Ok(tally)
 }
 
-/// What times that are rounded make of a load on the steepest ramp.
-fn late(load: &PiecewiseLinear, times: &[f64]) -> f64 {
+/// What times that are rounded make of a load on the steepest ramp, and of the fastest term.
+fn late(load: &PiecewiseLinear, body: &Prony, times: &[f64]) -> f64 {
     let ramps = load.corners().windows(2).map(|pair| pair[1].0 - pair[0].0);
     let steepest = ramps.filter(|ramp| *ramp > 0.0).fold(f64::INFINITY, f64::min);
     let latest = times.iter().filter(|time| time.is_finite());
     let latest = latest.fold(load.end().abs(), |most, time| most.max(time.abs()));
-    16.0 * f64::EPSILON * latest / steepest
+    let shortest = body.relaxation_terms().first().map_or(f64::INFINITY, |term| term.time);
+    16.0 * f64::EPSILON * latest * (1.0 / steepest + 1.0 / shortest)
 }
 
 /// Of unloading what holds of any.
 fn unloading(
     creep: &Creep<'_>,
-    load: &PiecewiseLinear,
+    (load, body): (&PiecewiseLinear, &Prony),
     tally: &mut Tally,
     times: &[f64],
 ) -> Result<(), Violation> {
@@ -246,7 +251,7 @@ fn unloading(
         return Ok(());
     };
     let greatest = load.corners().iter().fold(0.0_f64, |most, corner| most.max(corner.1));
-    let late = late(load, times);
+    let late = late(load, body, times);
     let mut before = f64::INFINITY;
     for &time in times.iter().filter(|time| **time > recession.time) {
         let during = |violation: Violation| violation.during(format!("unloading at {time:e}"));
@@ -303,12 +308,9 @@ fn relaxation(
         ensure!(state.approach == present, "asked for {present:e}: {state:?}");
         let Some(pieces) = elastic(bed, approach, time) else { continue };
         let greatest = pieces.last().map_or(0.0, |piece| piece[1].1);
-        let shortest = terms.first().map_or(f64::INFINITY, |term| term.0);
-        let late =
-            16.0 * f64::EPSILON * time.abs().max(pieces.first().map_or(0.0, |p| p[0].0.abs()));
         let stiff = bed.at_approach(present).map_or(0.0, |state| state.stiffness);
         let stiff = if stiff.is_finite() { stiff * present } else { 0.0 };
-        let allowed = (ROUNDING + late / shortest)
+        let allowed = (ROUNDING + late(approach, body, &[time]))
             * (greatest + stiff)
             * pieces.len().max(8) as f64
             * body.instantaneous_modulus();

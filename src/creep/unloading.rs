@@ -161,7 +161,8 @@ impl<'a, 'b> Unloading<'a, 'b> {
         let carries = |until: f64| growth.carried(kernel, time, until) > load;
         // Times may be long and begin far from 0, so that it is the time since the beginning that is halved.
         let span = recession.time - begin;
-        begin + super::exponential_sum::bisect(0.0, span, |since| carries(begin + since))
+        let since = super::exponential_sum::bisect(0.0, span, |since| carries(begin + since));
+        (begin + since).min(recession.time)
     }
 
     /// The first corner behind the recession from which on the contact grows again.

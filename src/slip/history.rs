@@ -280,7 +280,7 @@ impl<'a> SlipHistory<'a> {
     fn relieve(&mut self, target: BedState, slope: f64, mut change: f64) -> Result<(), Error> {
         let limit = self.friction.coefficient();
         let mut fall = self.load.load - target.load;
-        while fall > 0.0 {
+        while fall > 0.0 && self.load.load > target.load {
             let Some(last) = self.pieces.last().copied() else {
                 self.load = target;
                 return Ok(());
@@ -320,6 +320,11 @@ impl<'a> SlipHistory<'a> {
             };
             self.slide(top, &below, &front, Part { load, front: reach.min(load) })?;
             (fall, change) = left(part, fall, change);
+        }
+        // A load that has arrived stays where it is, whatever rounding has left of the step, and T goes on.
+        if fall > 0.0 {
+            let force = self.force() + change;
+            self.turn(force)?;
         }
         // What is less than rounding of the step falls as well.
         if self.load.load > target.load {
