@@ -11,7 +11,7 @@ use crate::dense::Dense;
 use crate::draw::Draw;
 use crate::instants::{Scale, duration, value};
 use crate::kernels;
-use crate::problem::{Drawn, Sample};
+use crate::problem::Sample;
 use crate::refusal::Circumstances;
 use crate::verdict::{Tally, Verdict, Violation, ensure};
 
@@ -32,11 +32,7 @@ const LONG: f64 = 100.0;
 /// What is wrong.
 pub fn creep(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let sample = match Sample::draw(&mut draw, kernels::GROWING)? {
-        Drawn::Sample(sample) => sample,
-        Drawn::Refused(verdict) => return verdict,
-    };
-    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+    Sample::look(&mut draw, kernels::GROWING, |sample, draw| run(sample, draw))
 }
 
 fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {

@@ -8,7 +8,7 @@ use crate::dense::Dense;
 use crate::draw::Draw;
 use crate::judge::{Judge, Settings};
 use crate::kernels;
-use crate::problem::{Drawn, Sample};
+use crate::problem::Sample;
 use crate::refusal::Circumstances;
 use crate::variant::{Run, Variant};
 use crate::verdict::{Tally, Verdict, Violation};
@@ -29,11 +29,7 @@ const MOST_NODES: usize = 600;
 /// What is wrong.
 pub fn fixed_loads(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let sample = match Sample::draw(&mut draw, kernels::DEFINITE)? {
-        Drawn::Sample(sample) => sample,
-        Drawn::Refused(verdict) => return verdict,
-    };
-    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+    Sample::look(&mut draw, kernels::DEFINITE, |sample, draw| run(sample, draw))
 }
 
 /// The same on more nodes of a half-space, so that solutions start on coarser grids.

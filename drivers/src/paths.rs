@@ -9,7 +9,7 @@ use crate::dense::Dense;
 use crate::draw::Draw;
 use crate::kernels;
 use crate::limits::Limit;
-use crate::problem::{Drawn, Sample};
+use crate::problem::Sample;
 use crate::refusal::Circumstances;
 use crate::variant::{Path, Run, Solver, Variant};
 use crate::verdict::{Tally, Verdict, Violation};
@@ -30,11 +30,7 @@ const WELL_CONDITIONED: f64 = 1e-9;
 /// What is wrong.
 pub fn paths(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let sample = match Sample::draw(&mut draw, kernels::ALL)? {
-        Drawn::Sample(sample) => sample,
-        Drawn::Refused(verdict) => return verdict,
-    };
-    Trial::new(&sample).run(&mut draw).map_err(|violation| violation.during(sample.context()))
+    Sample::look(&mut draw, kernels::ALL, |sample, draw| Trial::new(sample).run(draw))
 }
 
 /// A problem, and what is known of it.

@@ -24,15 +24,14 @@ pub(crate) struct Sample {
     pub(crate) hardness: Option<DMatrix<f64>>,
 }
 
-/// A problem that was drawn, or what there is to say of it if it was refused.
-pub(crate) enum Drawn {
-    Sample(Sample),
-    Refused(Verdict),
-}
-
 impl Sample {
-    /// Draws grid, heights and kernel, that of a free half-space or one of these.
-    pub(crate) fn draw(draw: &mut Draw<'_>, kernels: &[Class]) -> Result<Drawn, Violation> {
+    /// Draws grid, heights and kernel, that of a free half-space or one of these, and looks at the problem: what is wrong
+    /// there is told with it.
+    pub(crate) fn look(
+        draw: &mut Draw<'_>,
+        kernels: &[Class],
+        look: impl FnOnce(&mut Self, &mut Draw<'_>) -> Verdict,
+    ) -> Verdict {
         let grid = grid(draw)?;
         // Squares of pressures, and heights squared times modulus times cell, stay within double precision.
         let (height, modulus) = match draw.once_in(4) {
@@ -43,10 +42,11 @@ impl Sample {
         let surface = HeightMap::new(heights)
             .map_err(|error| Violation::new(format!("finite heights were refused: {error}")))?;
         let Made { class, kernel } = kernels::kernel(draw, grid, modulus, kernels);
-        match kernel {
-            Ok(kernel) => Ok(Drawn::Sample(Self { surface, kernel, class, hardness: None })),
-            Err(error) => Ok(Drawn::Refused(judge(&error, &grid, class))),
-        }
+        let mut sample = match kernel {
+            Ok(kernel) => Self { surface, kernel, class, hardness: None },
+            Err(error) => return judge(&error, &grid, class),
+        };
+        look(&mut sample, draw).map_err(|violation| violation.during(sample.context()))
     }
 
     /// Draws cells from square to 100 times as long as wide, heights and a half-space, in ordinary units; periodic

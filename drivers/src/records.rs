@@ -16,7 +16,7 @@ use crate::draw::Draw;
 use crate::edits::edit;
 use crate::kernels::{self, Class};
 use crate::limits::Limit;
-use crate::problem::{Drawn, Sample};
+use crate::problem::Sample;
 use crate::refusal::Circumstances;
 use crate::scratch::{Scratch, bytes_of};
 use crate::verdict::{Tally, Verdict, Violation, ensure};
@@ -46,11 +46,7 @@ pub fn records(bytes: &[u8]) -> Verdict {
     if draw.once_in(4) {
         return read(draw.rest(), &scratch);
     }
-    let sample = match Sample::draw(&mut draw, kernels::DEFINITE)? {
-        Drawn::Sample(sample) => sample,
-        Drawn::Refused(verdict) => return verdict,
-    };
-    whole(&sample, &mut draw, &scratch).map_err(|violation| violation.during(sample.context()))
+    Sample::look(&mut draw, kernels::DEFINITE, |sample, draw| whole(sample, draw, &scratch))
 }
 
 /// A record of a true path: the same after it was written, and hostile after it was tampered with.

@@ -7,7 +7,7 @@ use asperity::{Error, LoadingState, SlipError};
 
 use crate::draw::Draw;
 use crate::kernels;
-use crate::problem::{Drawn, Sample};
+use crate::problem::Sample;
 use crate::springs::Springs;
 use crate::variant::{Run, Variant};
 use crate::verdict::{Tally, Verdict, Violation, ensure};
@@ -30,11 +30,7 @@ const UNDERFLOWS: f64 = 1e-290;
 /// What is wrong.
 pub fn slip(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let sample = match Sample::draw(&mut draw, kernels::GROWING)? {
-        Drawn::Sample(sample) => sample,
-        Drawn::Refused(verdict) => return verdict,
-    };
-    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+    Sample::look(&mut draw, kernels::GROWING, |sample, draw| run(sample, draw))
 }
 
 fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {

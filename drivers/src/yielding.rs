@@ -7,7 +7,7 @@ use crate::dense::{ContactSet, Instant, Node};
 use crate::draw::Draw;
 use crate::kernels;
 use crate::paths::Trial;
-use crate::problem::{Drawn, Sample};
+use crate::problem::Sample;
 use crate::records::whole;
 use crate::scratch::Scratch;
 use crate::variant::Path;
@@ -26,12 +26,10 @@ const TOLERANCE: f64 = 1e-11;
 /// What is wrong.
 pub fn yielding(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let mut sample = match Sample::draw(&mut draw, kernels::GROWING)? {
-        Drawn::Sample(sample) => sample,
-        Drawn::Refused(verdict) => return verdict,
-    };
-    sample.harden(&mut draw);
-    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+    Sample::look(&mut draw, kernels::GROWING, |sample, draw| {
+        sample.harden(draw);
+        run(sample, draw)
+    })
 }
 
 fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {

@@ -2,6 +2,7 @@
 
 use super::growth::{Growth, Kernel};
 use super::hereditary::{Hereditary, Place};
+use super::onset::Onset;
 use super::piecewise_linear::PiecewiseLinear;
 use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
@@ -63,6 +64,13 @@ pub struct Recession {
     pub effective_load: f64,
     /// Whether it falls at once: then not even the state just after this time is one of the path.
     pub is_jump: bool,
+}
+
+impl Recession {
+    /// Whether the contact has begun to recede just after a time.
+    pub(super) fn has_begun(&self, time: f64) -> bool {
+        Onset { time: self.time, is_jump: self.is_jump }.has_begun(time)
+    }
 }
 
 impl<'a> Creep<'a> {
@@ -181,13 +189,11 @@ impl<'a> Creep<'a> {
 
     fn check(&self, time: f64) -> Result<(), Error> {
         Error::require("time", time, !time.is_nan(), "a number")?;
-        match self.recession {
-            Some(Recession { time: from, effective_load, is_jump })
-                if time > from || (is_jump && time == from) =>
-            {
-                Err(CreepError::ContactRecedes { time: from, effective_load }.into())
+        match self.recession.filter(|recession| recession.has_begun(time)) {
+            Some(Recession { time, effective_load, .. }) => {
+                Err(CreepError::ContactRecedes { time, effective_load }.into())
             }
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 

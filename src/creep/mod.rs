@@ -42,6 +42,7 @@ mod exponential_sum;
 mod growth;
 mod hereditary;
 mod load_controlled;
+mod onset;
 mod piecewise_linear;
 mod prony;
 mod relaxation;

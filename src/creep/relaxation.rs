@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 
 use super::growth::{Growth, Kernel};
 use super::hereditary::Hereditary;
+use super::onset::Onset;
 use super::piecewise_linear::PiecewiseLinear;
 use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
@@ -46,8 +47,8 @@ pub struct Relaxation<'a> {
     growth: Growth<'a>,
     /// The load that is left of it.
     relaxed: Hereditary,
-    /// When the approach falls for the first time, and whether it does at once.
-    recedes: Option<(f64, bool)>,
+    /// When the approach falls for the first time.
+    recedes: Option<Onset>,
     /// When the path ends, and at which approach.
     ends: Option<(f64, f64)>,
 }
@@ -84,7 +85,7 @@ impl<'a> Relaxation<'a> {
     /// When the approach falls for the first time.
     #[must_use]
     pub fn recession(&self) -> Option<f64> {
-        self.recedes.map(|(time, _)| time)
+        self.recedes.map(|recedes| recedes.time)
     }
 
     /// The state just after a time. Its effective load is the elastic load at the approach.
@@ -96,11 +97,9 @@ impl<'a> Relaxation<'a> {
     pub fn at(&self, time: f64) -> Result<CreepState, Error> {
         Error::require("time", time, !time.is_nan(), "a number")?;
         let effective_load = self.growth.at(time);
-        let has_fallen =
-            |(from, is_jump): &(f64, bool)| time > *from || (*is_jump && time == *from);
-        if let Some((from, _)) = self.recedes.filter(has_fallen) {
-            let effective_load = self.growth.at(from);
-            return Err(CreepError::ContactRecedes { time: from, effective_load }.into());
+        if let Some(Onset { time, .. }) = self.recedes.filter(|recedes| recedes.has_begun(time)) {
+            let effective_load = self.growth.at(time);
+            return Err(CreepError::ContactRecedes { time, effective_load }.into());
         }
         let approach = self.approach.value_at(time);
         let is_beyond =
@@ -167,7 +166,7 @@ impl<'a> Relaxation<'a> {
 struct Elastic {
     /// (time, load): linear in between, for all knots of the path are among them.
     knots: Vec<(f64, f64)>,
-    recedes: Option<(f64, bool)>,
+    recedes: Option<Onset>,
     ends: Option<(f64, f64)>,
 }
 
@@ -179,7 +178,8 @@ impl Elastic {
         for &(time, value) in approach.corners() {
             let (start, from) = before.unwrap_or((time, 0.0));
             if value < from && from > 0.0 {
-                return Ok(Self { knots, recedes: Some((start, time == start)), ends: None });
+                let recedes = Onset { time: start, is_jump: time == start };
+                return Ok(Self { knots, recedes: Some(recedes), ends: None });
             }
             // Knots on the way, which a jump passes too.
             let first = approaches.partition_point(|knot| *knot <= from.max(0.0));

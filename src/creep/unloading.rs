@@ -3,6 +3,7 @@
 use super::growth::Kernel;
 use super::hereditary::Place;
 use super::load_controlled::{Creep, Recession};
+use super::onset::Onset;
 use super::state::in_pieces;
 use crate::bed::{BedState, Superposition};
 use crate::loading::LoadingState;
@@ -44,8 +45,8 @@ pub struct Unloading<'a, 'b> {
     creep: &'b Creep<'a>,
     derivative: Kernel,
     recession: Option<Recession>,
-    /// When the contact grows again, and whether it does at once.
-    returns: Option<(f64, bool)>,
+    /// When the contact grows again.
+    returns: Option<Onset>,
 }
 
 /// The contact at a time of unloading.
@@ -83,7 +84,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
     /// When the contact grows again: until then it is a single unloading.
     #[must_use]
     pub fn returns(&self) -> Option<f64> {
-        self.returns.map(|(time, _)| time)
+        self.returns.map(|returns| returns.time)
     }
 
     /// The contact just after a time.
@@ -97,9 +98,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
             let contact = self.creep.bed().at_load(state.effective_load)?;
             return Ok(UnloadingState { time, load: state.load, contact_time: time, contact });
         };
-        let has_returned =
-            |(from, is_jump): &(f64, bool)| time > *from || (*is_jump && time == *from);
-        if let Some((time, _)) = self.returns.filter(has_returned) {
+        if let Some(Onset { time, .. }) = self.returns.filter(|returns| returns.has_begun(time)) {
             return Err(CreepError::ContactReturns { time }.into());
         }
         let (contact_time, effective_load) = self.contact(recession, time);
@@ -128,7 +127,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
     }
 
     fn receded(&self, time: f64) -> Option<Recession> {
-        self.recession.filter(|r| time > r.time || (r.is_jump && time == r.time))
+        self.recession.filter(|recession| recession.has_begun(time))
     }
 
     /// t₁ and the effective load of the contact. What was put on at once is taken off in part.
@@ -170,16 +169,15 @@ impl<'a, 'b> Unloading<'a, 'b> {
     /// Between corners the load that a contact carries is convex in time and W is linear, so that the contact, once it
     /// recedes, goes on to do so up to the next corner. Behind a corner it does if the load falls at least as fast as
     /// relaxation takes it from the contact.
-    fn find_return(&self, recession: Recession) -> Option<(f64, bool)> {
+    fn find_return(&self, recession: Recession) -> Option<Onset> {
         let growth = self.creep.growth();
         let load = growth.load();
         for (corner, &(time, _)) in load.corners().iter().enumerate() {
-            let is_behind = time > recession.time || (recession.is_jump && time == recession.time);
-            if !is_behind {
+            if !recession.has_begun(time) {
                 continue;
             }
             if load.jump(corner) > 0.0 {
-                return Some((time, true));
+                return Some(Onset { time, is_jump: true });
             }
             if load.duration(corner) == 0.0 {
                 continue;
@@ -189,7 +187,7 @@ impl<'a, 'b> Unloading<'a, 'b> {
             let rate = load.slope(corner);
             let is_none = load.value(Place { corner, since: 0.0 }) <= 0.0 && rate <= 0.0;
             if rate > relaxes && !is_none {
-                return Some((time, false));
+                return Some(Onset { time, is_jump: false });
             }
         }
         None

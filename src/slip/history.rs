@@ -391,7 +391,8 @@ fn friction_work(bed: &Bed, [p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) 
         return 0.0;
     }
     let fixed = (p0.load - s0.load) * approaches - (p0.approach - s0.approach) * loads;
-    let (above, under) = (before_end(bed, s1, s0), loads * approaches - before_end(bed, s1, s0));
+    let above = before_end(bed, s1, s0);
+    let under = loads * approaches - above;
     // P(s) moves: dP/ds = change/(s₁ − s₀).
     let change = p1.load - p0.load;
     let moving = if change == 0.0 {
@@ -399,11 +400,8 @@ fn friction_work(bed: &Bed, [p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) 
     } else {
         let [low, high] = if change < 0.0 { [p1, p0] } else { [p0, p1] };
         let all = (high.load - low.load) * (high.approach - low.approach);
-        let carried = if change < 0.0 {
-            all - before_end(bed, low, high)
-        } else {
-            before_end(bed, low, high)
-        };
+        let below_end = before_end(bed, low, high);
+        let carried = if change < 0.0 { all - below_end } else { below_end };
         change / loads * above - carried * (loads / change)
     };
     (fixed + above - under + moving).max(0.0)

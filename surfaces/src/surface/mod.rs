@@ -45,6 +45,9 @@ use nalgebra::DMatrix;
 
 use crate::{Error, Grid};
 
+/// Relative slack of cut-off wavelengths, so that a wave or a node at one is within it however it was rounded.
+const SLACK: f64 = 1e-12;
+
 /// A rough surface: heights \[m\] on the nodes of any grid, positive towards the half-space.
 pub trait Surface {
     /// Heights on `grid`, as an nx × ny matrix: element `[(ix, iy)]` belongs to node (ix, iy).

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::fourier::Waves;
-use super::{Topography, Trend, Window};
+use super::{SLACK, Topography, Trend, Window};
 use crate::number::quantity;
 
 /// Something about a surface that a person should look at: most often a unit that was mistaken. Nothing is refused
@@ -51,8 +51,6 @@ const TILT: f64 = 3.0;
 const SMOOTH: f64 = 1e-11;
 /// Cells of the shortest wave that counts as resolved, and the share that shorter waves may have.
 const CELLS: f64 = 4.0;
-/// Relative slack of it, for rounding.
-const SLACK: f64 = 1e-12;
 const UNRESOLVED: f64 = 0.1;
 /// Nodes a side of the piece in which waves are looked at: more of them tell nothing new, and take memory.
 const MIDDLE: std::ops::RangeInclusive<usize> = 16..=512;

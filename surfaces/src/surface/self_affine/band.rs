@@ -2,11 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::surface::SLACK;
 use crate::{Error, Grid};
-
-/// Relative slack of the cut-offs, so that a wave of the grid whose wavelength is the cut-off is
-/// inside the band however its wave number was rounded.
-const SLACK: f64 = 1e-12;
 
 /// The band of wavevectors and the shape of the spectrum in it, in terms of t = q/q_r.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::Error;
+use crate::surface::SLACK;
 use crate::surface::topography::{Filter, Topography, Trend};
 
 /// Heights of hills, and depths of dales, that count as elements of a profile, over Rz.
@@ -103,9 +104,6 @@ impl Topography {
         })
     }
 }
-
-/// Relative slack of the bounds of a cut-off, for rounding.
-const SLACK: f64 = 1e-12;
 
 /// From the lowest to the highest.
 fn extent(heights: &[f64]) -> f64 {

@@ -7,12 +7,9 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::Topography;
+use crate::surface::SLACK;
 use crate::surface::fourier::Waves;
 use crate::{Error, Grid};
-
-/// Relative slack of a sharp cut-off, so that a wave of exactly the cut-off wavelength passes however
-/// it was rounded.
-const SLACK: f64 = 1e-12;
 
 /// How a filter of a cut-off wavelength λ_c parts long waves from short ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
