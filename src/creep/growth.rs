@@ -1,6 +1,6 @@
 //! Contact that grows: when each node touches, and the weights of all increments of pressure.
 
-use super::exponential_sum::ExponentialSum;
+use super::exponential_sum::{ExponentialSum, bisect};
 use super::hereditary::{Hereditary, Place};
 use super::prony::{Prony, PronyTerm};
 use super::weights::Weights;
@@ -177,12 +177,20 @@ impl<'a> Growth<'a> {
         self.carried(kernel, time, until) - beyond * kernel.at(time - until)
     }
 
-    /// The jump within which the contact that is left of it carries a load at a time: when it was, and the effective load
-    /// up to which it is left. `None` if contact that came before the jump or after it makes the difference.
-    pub(super) fn within_jump(&self, kernel: &Kernel, time: f64, load: f64) -> Option<(f64, f64)> {
+    /// The contact that carries a load at a time, of all that was made up to another: when it was made, and its effective
+    /// load. `None` if all of it carries no more.
+    ///
+    /// Corner by corner, so that what a jump or a ramp begins with is what the one before it ends with: a load that
+    /// returns to the value before a jump leaves nothing of the jump, whatever rounding does.
+    pub(super) fn left(
+        &self,
+        kernel: &Kernel,
+        (time, load): (f64, f64),
+        until: f64,
+    ) -> Option<(f64, f64)> {
         let mut before = 0.0;
         for (corner, &(start, _)) in self.load.corners().iter().enumerate() {
-            if start > time || before > load {
+            if start > until {
                 return None;
             }
             let (jump, left) = (self.load.response_to_jump(corner), kernel.at(time - start));
@@ -191,11 +199,20 @@ impl<'a> Growth<'a> {
                 return Some((start, reached + ((load - before) / left).min(jump)));
             }
             before += jump * left;
-            let length = self.load.duration(corner).min(time - start);
-            if length > 0.0 {
-                let after = time - (start + length);
-                before += kernel.over(&self.load.rate(corner), (0.0, length), after);
+            let length = self.load.duration(corner).min(until - start);
+            if length <= 0.0 {
+                continue;
             }
+            let rate = self.load.rate(corner);
+            let carried =
+                |since: f64| before + kernel.over(&rate, (0.0, since), time - (start + since));
+            let after = carried(length);
+            if after > load {
+                let since = bisect(0.0, length, |since| carried(since) > load);
+                let reached = self.load.response(Place { corner, since }).0;
+                return Some((start + since, self.to_knot(reached)));
+            }
+            before = after;
         }
         None
     }

@@ -130,7 +130,8 @@ impl<'a, 'b> Unloading<'a, 'b> {
         self.recession.filter(|recession| recession.has_begun(time))
     }
 
-    /// t₁ and the effective load of the contact. What was put on at once is taken off in part.
+    /// t₁ and the effective load of the contact: that of later times would carry more than the load. What was put on at
+    /// once is taken off in part.
     fn contact(&self, recession: Recession, time: f64) -> (f64, f64) {
         let (growth, load) = (self.creep.growth(), self.creep.load(time));
         if load <= 0.0 {
@@ -138,30 +139,10 @@ impl<'a, 'b> Unloading<'a, 'b> {
             let begin = growth.load().corners().first().map_or(0.0, |corner| corner.0);
             return (begin.min(recession.time), 0.0);
         }
-        let within = growth.within_jump(self.creep.kernel(), time, load);
-        if let Some(found) = within.filter(|found| found.0 <= recession.time) {
-            return found;
-        }
-        let contact_time = self.contact_time(recession, time);
         // Just before a jump that ends the growth it is as large as ever.
-        let effective_load = if contact_time < recession.time {
-            growth.at(contact_time)
-        } else {
-            recession.effective_load
-        };
-        (contact_time, effective_load)
-    }
-
-    /// t₁: the contact of later times would carry more than the load.
-    fn contact_time(&self, recession: Recession, time: f64) -> f64 {
-        let (growth, kernel) = (self.creep.growth(), self.creep.kernel());
-        let load = self.creep.load(time);
-        let begin = growth.load().corners().first().map_or(0.0, |corner| corner.0);
-        let carries = |until: f64| growth.carried(kernel, time, until) > load;
-        // Times may be long and begin far from 0, so that it is the time since the beginning that is halved.
-        let span = recession.time - begin;
-        let since = super::exponential_sum::bisect(0.0, span, |since| carries(begin + since));
-        (begin + since).min(recession.time)
+        let whole = (recession.time, recession.effective_load);
+        let left = growth.left(self.creep.kernel(), (time, load), recession.time);
+        left.map_or(whole, |(since, effective_load)| (since.min(recession.time), effective_load))
     }
 
     /// The first corner behind the recession from which on the contact grows again.

@@ -153,6 +153,25 @@ fn what_was_put_on_at_once_is_taken_off_in_part() {
     assert!(within > 100, "{within}");
 }
 
+/// A load that comes back to what it was before a jump leaves nothing of the jump, whatever rounding does.
+#[test]
+fn nothing_is_left_of_a_jump_that_is_taken_back() {
+    let (_, history) = history();
+    let bed = Bed::new(&history).unwrap();
+    let elastic = Prony::relaxation(1.0, &[]).unwrap();
+    for (k, knot) in bed.loads().iter().take(60).enumerate().skip(1) {
+        let (low, high) = (knot / 1.37, 0.9 * bed.last_load());
+        for (begin, duration) in [(0.0, 0.1 * k as f64), (1.3423e7, 1.2e-5)] {
+            let on = begin + duration;
+            let corners = [(begin, 0.0), (on, low), (on, high), (on + 1.0, low)];
+            let corners = PiecewiseLinear::new(corners).unwrap();
+            let creep = Creep::new(&bed, &elastic, &corners).unwrap();
+            let state = Unloading::new(&creep).unwrap().at(on + 1.0).unwrap();
+            assert!((state.contact.load / low - 1.0).abs() < 1e-9, "{low}: {state:?}");
+        }
+    }
+}
+
 /// Just after a jump up the contact has returned.
 #[test]
 fn contact_returns_with_a_jump() {
