@@ -58,12 +58,17 @@ fn a_held_load_is_that_of_the_reference() -> Done {
         assert!((found[3] / truth[2] - 1.0).abs() < 1e-11);
         assert!((found[5] / truth[3] - 1.0).abs() < 1e-11);
     }
-    for file in
-        ["creep.png", "touch_times.png", "cycles.csv", "cycles.png", "pressure.npy", "gap.npy"]
-    {
+    for file in [
+        "creep.png",
+        "touch_times.png",
+        "creep_cycles.csv",
+        "creep_cycles.png",
+        "pressure.npy",
+        "gap.npy",
+    ] {
         assert!(folder.join("held").join(file).exists(), "{file}");
     }
-    let (header, cycles) = table(&folder.join("held/cycles.csv"))?;
+    let (header, cycles) = table(&folder.join("held/creep_cycles.csv"))?;
     assert!(header.starts_with("frequency,amplitude,approach_amplitude,dissipation"));
     assert!(cycles.len() > 10 && cycles.iter().all(|row| row[3] > 0.0));
 

@@ -239,7 +239,7 @@ def test_the_creep_of_the_program(program: Callable[..., str], record: Path, tmp
     assert within <= 1500
     settings = {"mean_load": load, "amplitude": 0.2 * load, "steps": 64, "tolerance": 1e-4, "most": 1000}
     cycles = asp.steady_cycles(path.history[:within], rubber, periods=periods, **settings)  # type: ignore[arg-type]
-    table = csv(tmp_path / "cycles.csv")
+    table = csv(tmp_path / "creep_cycles.csv")
     np.testing.assert_array_equal([1.0 / cycle.period for cycle in reversed(cycles)], table.pop("frequency"))
     for name, column in table.items():
         np.testing.assert_array_equal([getattr(cycle, name) for cycle in reversed(cycles)], column, err_msg=name)

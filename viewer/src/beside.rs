@@ -6,8 +6,7 @@ use std::time::SystemTime;
 
 use serde_json::{Map, Value, json};
 
-/// A table that a page can show: its file, what it is, its column along x (the first one if that is empty), and those
-/// that are drawn.
+/// A table that a page can show: its file, what it is, its column along x, and those that are drawn.
 struct Kind {
     file: &'static str,
     title: &'static str,
@@ -16,7 +15,7 @@ struct Kind {
     charts: &'static [&'static str],
 }
 
-const KINDS: [Kind; 6] = [
+const KINDS: [Kind; 7] = [
     Kind {
         file: "unloading.csv",
         title: "Unloading from the last state",
@@ -33,9 +32,9 @@ const KINDS: [Kind; 6] = [
     },
     Kind {
         file: "cycles.csv",
-        title: "Cycles",
+        title: "Cycles of the tangential load",
         short: "Cycles",
-        along: "",
+        along: "amplitude",
         charts: &["dissipation", "loss_factor"],
     },
     Kind {
@@ -44,6 +43,13 @@ const KINDS: [Kind; 6] = [
         short: "Creep",
         along: "time",
         charts: &["contact_area_fraction", "mean_gap", "load", "approach"],
+    },
+    Kind {
+        file: "creep_cycles.csv",
+        title: "Steady cycles of the load",
+        short: "Creep, cycles",
+        along: "frequency",
+        charts: &["dissipation", "loss_factor"],
     },
     Kind {
         file: "leak.csv",
@@ -135,9 +141,8 @@ fn table(text: &str, kind: &Kind) -> Result<(Vec<Value>, usize), String> {
             column.push(value.map(rounded));
         }
     }
-    let along = if kind.along.is_empty() { names[0] } else { kind.along };
     let columns = names.iter().zip(columns);
-    let columns = columns.filter(|(name, _)| **name == along || kind.charts.contains(name));
+    let columns = columns.filter(|(name, _)| **name == kind.along || kind.charts.contains(name));
     let columns = columns.map(|(name, values)| json!({"name": name, "values": values}));
     Ok((columns.collect(), rows.len()))
 }

@@ -1,4 +1,4 @@
-//! `cycles.csv` and `cycles.png`: loops, and the energy lost in cycles of load against their frequency.
+//! `creep_cycles.csv` and `creep_cycles.png`: loops, and the energy lost in cycles of load against their frequency.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

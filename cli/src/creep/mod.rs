@@ -1,8 +1,8 @@
 //! `asperity creep`: viscoelastic bodies, from the record of an elastic path.
 //!
 //! Prints how contact grows over time and when it percolates and seals, and writes `creep.csv`, `creep.png`,
-//! `touch_times.png`, for a load that is held `cycles.csv` and `cycles.png`, and with a fluid `leak_over_time.csv` and
-//! `leak_over_time.png`.
+//! `touch_times.png`, for a load that is held `creep_cycles.csv` and `creep_cycles.png`, and with a fluid
+//! `leak_over_time.csv` and `leak_over_time.png`.
 
 mod charts;
 mod course;
@@ -75,8 +75,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         leaks.draw(directory).into_iter().for_each(|drawn| outcome.written(drawn));
     }
     if let Some(Ok(sweep)) = &sweep {
-        outcome.written(sweep.write(&directory.join("cycles.csv")));
-        outcome.written(sweep.draw(&directory.join("cycles.png")));
+        outcome.written(sweep.write(&directory.join("creep_cycles.csv")));
+        outcome.written(sweep.draw(&directory.join("creep_cycles.png")));
     }
     if let Some(format) = options.fields {
         let found = followed.fields(&record, &bed, options.pieces);

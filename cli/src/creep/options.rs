@@ -17,8 +17,8 @@ use crate::values::{FORCE, LENGTH, TIME, number};
 /// stepped in time, and the remaining error of the steps is measured and printed. Writes creep.csv (time,
 /// effective_load, load, approach, contact_area_fraction, mean_gap), creep.png (area, mean gap and load over time, with
 /// the times at which the contact percolates and its last channel closes), touch_times.png (when each node touched),
-/// and for a load that is held cycles.csv and cycles.png (loops, and the energy lost in cycles of load against their
-/// frequency), and with the options of a fluid leak_over_time.csv and leak_over_time.png.
+/// and for a load that is held creep_cycles.csv and creep_cycles.png (loops, and the energy lost in cycles of load
+/// against their frequency), and with the options of a fluid leak_over_time.csv and leak_over_time.png.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File that `asperity path --record` has written
