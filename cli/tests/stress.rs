@@ -25,7 +25,7 @@ fn stresses_are_printed_and_drawn() -> Done {
     let record = LoadingRecord::read_npz(folder.join("path.npz"))?;
     let load = 0.5 * record.states().last().ok_or("no state")?.contact.load;
     let line = format!(
-        "stress path.npz --load {load:e} --friction 0.2 --angle 30 --yield-stress 1e9 --against-yield-stress 1e15 --volume 5 --out seen"
+        "stress path.npz --load {load:e} --friction 0.2 --angle 30 --yield-stress 1e9 --against-yield-stress 1e15 --volume 1 --out seen"
     );
     let words = String::from_utf8(run(&folder.0, &line)?.stdout)?;
     for said in [
@@ -42,7 +42,7 @@ fn stresses_are_printed_and_drawn() -> Done {
     }
     assert!(fs::read(folder.join("seen/stress.vti"))?.starts_with(b"<?xml"));
 
-    let json = line.replace("--volume 5 --out seen", "--json");
+    let json = line.replace("--volume 1 --out seen", "--json");
     let document: Value = serde_json::from_slice(&run(&folder.0, &json)?.stdout)?;
     let mut path = record.replay()?;
     let state = record.history().at_load(load).ok_or("no state")?;

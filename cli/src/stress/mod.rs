@@ -128,7 +128,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outcome.written(charts::draw(&bodies, &place("stress.png")));
     let Some(body) = bodies.first() else { return outcome.finish() };
     outcome.all_written(maps::draw(&moment, body, directory));
-    let volume = options.volume.map(|count| (place("stress.vti"), count));
-    outcome.all_written(section::draw(&moment, body, volume, directory));
+    outcome.all_written(section::draw(&moment, body, directory));
+    if let Some(depths) = options.volume {
+        outcome.written(section::write_volume(&moment, body, depths, place("stress.vti")));
+    }
     outcome.finish()
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use asperity::Grid;
-use asperity::stress::{Measure, StressField};
+use asperity::stress::Measure;
 use asperity_cli::field_map::{FieldMap, Scale};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -32,11 +32,11 @@ struct Section {
 
 impl Section {
     /// About a node of a side, so deep.
-    fn new((at, nodes): (usize, usize), width: f64, deep: f64, depths: usize) -> Self {
+    fn new((at, nodes): (usize, usize), width: f64, deep: f64) -> Self {
         let half = (0.5 * WIDE * deep / width).ceil().max(1.0) as usize;
         let first = at.saturating_sub(half);
         let end = (at + half + 1).min(nodes);
-        let values = DMatrix::zeros(end - first, depths);
+        let values = DMatrix::zeros(end - first, DEPTHS);
         Self { first, nodes: end - first, width, values }
     }
 
@@ -47,54 +47,63 @@ impl Section {
     }
 }
 
-/// Computes the depths, draws both sections, and writes the volume if one is asked for, with its number of depths.
+/// How deep sections and the volume reach \[m\].
+fn reach(moment: &Moment, body: &Body) -> f64 {
+    let depth = body.survey.greatest(Measure::VonMises).depth;
+    (DEEP * depth).max(LEAST * moment.record.grid().cell_area().sqrt())
+}
+
+/// The distance of so many depths that reach down to one.
+fn step(deep: f64, depths: usize) -> f64 {
+    deep / depths.saturating_sub(1).max(1) as f64
+}
+
+/// Writes the stresses at so many depths for `ParaView`.
+pub(super) fn write_volume(
+    moment: &Moment,
+    body: &Body,
+    depths: usize,
+    file: PathBuf,
+) -> Result<PathBuf, Failure> {
+    let progress = Progress::new();
+    let step = step(reach(moment, body), depths);
+    body.below
+        .write_volume(&moment.pressure, (step, depths), &file, |field| progress.passed(field.depth))
+        .map_err(|error| Failure::writing(&file, error))?;
+    Ok(file)
+}
+
+/// Draws both sections.
 pub(super) fn draw(
     moment: &Moment,
     body: &Body,
-    volume: Option<(PathBuf, usize)>,
     directory: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
     let grid = moment.record.grid();
     let greatest = body.survey.greatest(Measure::VonMises);
     let (ix, iy) = greatest.node;
-    let deep = (DEEP * greatest.depth).max(LEAST * grid.cell_area().sqrt());
-    let depths = volume.as_ref().map_or(DEPTHS, |(_, count)| *count);
-    let step = deep / depths.saturating_sub(1).max(1) as f64;
-    let mut along_x = Section::new((ix, grid.nx()), grid.dx(), deep, depths);
-    let mut along_y = Section::new((iy, grid.ny()), grid.dy(), deep, depths);
+    let deep = reach(moment, body);
+    let step = step(deep, DEPTHS);
+    let mut along_x = Section::new((ix, grid.nx()), grid.dx(), deep);
+    let mut along_y = Section::new((iy, grid.ny()), grid.dy(), deep);
     let progress = Progress::new();
-    let mut seen = 0;
-    let mut see = |field: &StressField| {
-        seen += 1;
-        progress.passed(field.depth);
+    for k in 0..DEPTHS {
+        let field = body.below.at_depth(&moment.pressure, k as f64 * step);
+        let field = field.map_err(|error| Failure::new("cannot compute a section", error))?;
         let at = |ix: usize, iy: usize| {
             let stress = field.at(grid.index(ix, iy)).unwrap_or_default();
             stress.von_mises()
         };
-        along_x.put(depths - seen, |k| at(k, iy));
-        along_y.put(depths - seen, |k| at(ix, k));
-    };
+        along_x.put(DEPTHS - 1 - k, |k| at(k, iy));
+        along_y.put(DEPTHS - 1 - k, |k| at(ix, k));
+        progress.passed(field.depth);
+    }
     let mut written = Vec::new();
-    let pressure = &moment.pressure;
-    if let Some((name, count)) = volume {
-        body.below
-            .write_volume(pressure, (step, count), &name, see)
-            .map_err(|error| Failure::writing(&name, error))?;
-        written.push(name);
-    } else {
-        for k in 0..depths {
-            let field = body.below.at_depth(pressure, k as f64 * step);
-            see(&field.map_err(|error| Failure::new("cannot compute a section", error))?);
-        }
-    }
-    if depths == 1 {
-        return Ok(written);
-    }
     let (x, y) = grid.position(ix, iy);
     let at = |x: f64, y: f64| format!("({}, {})", quantity(x, "m", 4), quantity(y, "m", 4));
     for (section, along, middle) in [(&along_x, "x", ix), (&along_y, "y", iy)] {
         let failed = |error| Failure::new("cannot draw a section", error);
-        let rows = Grid::new(section.nodes, depths, section.width, step).map_err(failed)?;
+        let rows = Grid::new(section.nodes, DEPTHS, section.width, step).map_err(failed)?;
         let map = FieldMap {
             grid: &rows,
             length_unit: "m",
