@@ -75,6 +75,51 @@ fn branches_end_at_their_targets() {
     }
 }
 
+/// Between two events all is linear, so that stiffnesses are those of secants, on both branches; across a jump there
+/// is none.
+#[test]
+fn stiffnesses_are_those_of_secants() {
+    let grid = Grid::square(20, 1.0).unwrap();
+    let periodic = PeriodicBoussinesq::new(grid, 1.0).unwrap();
+    // Of a periodic half-space no distant point has a stiffness.
+    let kernels: [(&dyn InfluenceKernel, usize); 2] = [(&kernel(), 50), (&periodic, 0)];
+    let laws = [Adhesion::work(1e-3), Adhesion::maugis(1e-3, 0.02).range(0.08)];
+    for ((kernel, least), law) in
+        kernels.into_iter().flat_map(|kernel| laws.map(|law| (kernel, law)))
+    {
+        let end = ContactTarget::AreaFraction(0.5);
+        let mut path = AdhesivePath::builder(&surface(), kernel, law).until(end).build().unwrap();
+        let mut branches = vec![run(&mut path)];
+        path.unload().unwrap();
+        branches.push(run(&mut path));
+        let length = path.problem().greatest_gap() + path.law().range();
+        let pull = path.law().stress() * grid.nominal_area();
+        for states in branches {
+            let mut counts = [0; 2];
+            for pair in states.windows(2) {
+                let (event, [from, to]) = (pair[1].event, [0, 1].map(|k| pair[k].contact));
+                if event == AdhesiveEvent::JumpEnd {
+                    continue;
+                }
+                let steps = [to.approach - from.approach, from.mean_gap - to.mean_gap];
+                let stiffnesses = [from.contact_stiffness, from.interfacial_stiffness];
+                for (k, (step, stiffness)) in steps.into_iter().zip(stiffnesses).enumerate() {
+                    let Some(stiffness) = stiffness else { continue };
+                    // Loads and lengths are exact to 1e-12 of the greatest, as the elastic parts of one are.
+                    let change = to.load - from.load;
+                    let rounding = 1e-12 * (pull + from.load.abs() + stiffness.abs() * length);
+                    assert!(
+                        (change - stiffness * step).abs() < 1e-9 * change.abs() + rounding,
+                        "{k} {pair:?}"
+                    );
+                    counts[k] += usize::from(change.abs() > 1e3 * rounding);
+                }
+            }
+            assert!(counts[0] >= least && counts[1] >= 50, "{counts:?}");
+        }
+    }
+}
+
 /// In full contact the mean planes of a periodic half-space do not approach any more: a target beyond that is none, and
 /// the load stays what it was.
 #[test]

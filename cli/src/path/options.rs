@@ -131,7 +131,8 @@ pub(crate) struct Options {
     pub(super) save_every: Option<NonZeroUsize>,
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless
-    /// --record names another file. A target before the end of the record is read from it
+    /// --record names another file. A target before the end of the record is read from it, unless the record has
+    /// adhesion
     #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "against_surface", "against_turned", "against_shift", "nodes", "seed", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "rows_are_y", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "work_of_adhesion", "adhesion_range", "cohesive_stress", "periodic", "rule"], help_heading = "Records and files")]
     pub(super) resume: Option<PathBuf>,
 
