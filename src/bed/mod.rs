@@ -58,6 +58,9 @@
 //! ```
 
 mod superposition;
+/// What a load or an approach may exceed the last of a path by, relative to it, and still be meant to be it.
+const AT_THE_END: f64 = 1e-12;
+
 #[cfg(test)]
 mod tests;
 
@@ -246,7 +249,12 @@ impl<'a> Bed<'a> {
         self.within(interval, 0.0)
     }
 
-    /// The elastic state at a load.
+    /// Whether it can be read behind its last approach: full contact of a half-space that has a stiffness.
+    fn gives_way(&self) -> bool {
+        self.is_full && self.stiffnesses.last().is_some_and(|stiffness| stiffness.is_finite())
+    }
+
+    /// The elastic state at a load; what is beyond the last by rounding is the last.
     ///
     /// # Errors
     ///
@@ -254,9 +262,11 @@ impl<'a> Bed<'a> {
     pub fn at_load(&self, load: f64) -> Result<BedState, Error> {
         let is_load = load.is_finite() && load >= 0.0;
         Error::require("load", load, is_load, "finite and not negative")?;
-        if load > self.greatest_load() {
+        let greatest = self.greatest_load();
+        if load > greatest * (1.0 + AT_THE_END) {
             return Err(self.ends_before("load", load, self.last_load()));
         }
+        let load = load.min(greatest);
         // The first knot has the load 0.
         let interval = self.loads.partition_point(|knot| *knot <= load).saturating_sub(1);
         let state = self.within(interval, load);
@@ -265,7 +275,7 @@ impl<'a> Bed<'a> {
         Ok(state)
     }
 
-    /// The elastic state at an approach.
+    /// The elastic state at an approach; what is beyond the last by rounding is the last.
     ///
     /// # Errors
     ///
@@ -273,6 +283,12 @@ impl<'a> Bed<'a> {
     pub fn at_approach(&self, approach: f64) -> Result<BedState, Error> {
         let is_one = approach.is_finite() && approach >= 0.0;
         Error::require("approach", approach, is_one, "finite and not negative")?;
+        let approach = match self.approaches.last() {
+            Some(&last) if !self.gives_way() && approach <= last * (1.0 + AT_THE_END) => {
+                approach.min(last)
+            }
+            _ => approach,
+        };
         let interval = self.approaches.partition_point(|knot| *knot <= approach).saturating_sub(1);
         let (start, load) = (self.approaches[interval], self.loads[interval]);
         let advance = approach - start;

@@ -51,6 +51,11 @@ impl Kernel {
         Self { constant: 0.0, terms: terms.collect() }
     }
 
+    /// The longest relaxation time; 0 without any.
+    pub(super) fn slowest(&self) -> f64 {
+        self.terms.last().map_or(0.0, |term| term.time)
+    }
+
     fn at(&self, time: f64) -> f64 {
         let terms = self.terms.iter().map(|term| term.amount * (-time / term.time).exp());
         self.constant + terms.sum::<f64>()

@@ -6,7 +6,8 @@ use crate::Error;
 ///
 /// Two corners at one time are a jump; of more than two at one time the first and the last count, for what happens in
 /// no time at all leaves no trace. Before the first corner the quantity is 0, so that a first corner at another value
-/// is a jump too.
+/// is a jump too. A value that differs from the one before, or from 0, by less than 10⁻¹⁴ of the greatest so far is
+/// taken for it: 0.1 + 0.2 held at 0.3 does not fall.
 ///
 /// ```
 /// use asperity::creep::PiecewiseLinear;
@@ -23,7 +24,11 @@ use crate::Error;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PiecewiseLinear {
     corners: Vec<(f64, f64)>,
+    greatest: f64,
 }
+
+/// Values that differ by less than this part of the greatest are the same.
+const SAME_VALUE: f64 = 1e-14;
 
 impl PiecewiseLinear {
     /// From corners (time, value).
@@ -33,7 +38,7 @@ impl PiecewiseLinear {
     /// [`Error::OutOfRange`] without a corner, for times and values that are not finite, for a time before that of the
     /// corner before it, and where a value changes too fast for double precision.
     pub fn new(corners: impl IntoIterator<Item = (f64, f64)>) -> Result<Self, Error> {
-        let mut all = Self { corners: Vec::new() };
+        let mut all = Self { corners: Vec::new(), greatest: 0.0 };
         for (time, value) in corners {
             all.push(time, value)?;
         }
@@ -116,7 +121,8 @@ impl PiecewiseLinear {
         Ok(self)
     }
 
-    /// The corners (time, value).
+    /// The corners (time, value). Times are sums of durations: what comes after 0.1 s and 0.2 s comes after
+    /// 0.30000000000000004 s.
     #[must_use]
     pub fn corners(&self) -> &[(f64, f64)] {
         &self.corners
@@ -148,6 +154,10 @@ impl PiecewiseLinear {
     fn push(&mut self, time: f64, value: f64) -> Result<(), Error> {
         Error::require("time of a corner", time, time.is_finite(), "finite")?;
         Error::require("value at a corner", value, value.is_finite(), "finite")?;
+        self.greatest = self.greatest.max(value.abs());
+        let known = self.corners.last().map(|corner| corner.1).into_iter().chain([0.0]);
+        let mut same = known.filter(|known| (value - known).abs() <= SAME_VALUE * self.greatest);
+        let value = same.next().unwrap_or(value);
         if let Some(&(before, old)) = self.corners.last() {
             let expected = "no earlier than the corner before";
             Error::require("time of a corner", time, time >= before, expected)?;
@@ -194,6 +204,22 @@ mod tests {
         ])?;
         assert_eq!(x.corners(), [(0.0, 3.0), (1.0, 4.0), (1.0, 2.0)]);
         assert_eq!(PiecewiseLinear::step(7.0)?.corners(), [(0.0, 7.0)]);
+        Ok(())
+    }
+
+    #[test]
+    fn values_of_rounding_are_none() -> Result<(), Error> {
+        let x = PiecewiseLinear::new([
+            (0.0, 0.0),
+            (1.0, 0.1 + 0.2),
+            (2.0, 0.3),
+            (3.0, 0.3 - 0.1 * 3.0),
+        ])?;
+        assert_eq!(x.corners()[2].1, 0.1 + 0.2);
+        assert_eq!(x.corners()[3].1, 0.0);
+        // What is small by itself is not.
+        let small = [(0.0, 1e-20), (1.0, 2e-20), (2.0, 1.0), (3.0, 1.0 - 1e-13)];
+        assert_eq!(PiecewiseLinear::new(small)?.corners(), small);
         Ok(())
     }
 

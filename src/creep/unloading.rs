@@ -149,10 +149,13 @@ impl<'a, 'b> Unloading<'a, 'b> {
     ///
     /// Between corners the load that a contact carries is convex in time and W is linear, so that the contact, once it
     /// recedes, goes on to do so up to the next corner. Behind a corner it does if the load falls at least as fast as
-    /// relaxation takes it from the contact.
+    /// relaxation takes it from the contact, or so nearly that no more than rounding is missing in the end: what it
+    /// carries lies above its tangent, and under a load that is held no term goes on for longer than its time.
     fn find_return(&self, recession: Recession) -> Option<Onset> {
         let growth = self.creep.growth();
         let load = growth.load();
+        let greatest = load.corners().iter().fold(0.0_f64, |most, corner| most.max(corner.1));
+        let slowest = self.creep.kernel().slowest();
         for (corner, &(time, _)) in load.corners().iter().enumerate() {
             if !recession.has_begun(time) {
                 continue;
@@ -167,10 +170,15 @@ impl<'a, 'b> Unloading<'a, 'b> {
             let relaxes = growth.carried_by(&self.derivative, time, contact);
             let rate = load.slope(corner);
             let is_none = load.value(Place { corner, since: 0.0 }) <= 0.0 && rate <= 0.0;
-            if rate > relaxes && !is_none {
+            let duration = load.duration(corner);
+            let reach = if rate == 0.0 { duration.min(slowest) } else { duration };
+            if (rate - relaxes) * reach > ROUNDING * greatest && !is_none {
                 return Some(Onset { time, is_jump: false });
             }
         }
         None
     }
 }
+
+/// Part of the greatest load below which what is missing of a load is rounding.
+const ROUNDING: f64 = 1e-12;

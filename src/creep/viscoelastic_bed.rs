@@ -401,16 +401,24 @@ impl<'a> ViscoelasticBed<'a> {
             }
             left -= closes;
         }
+        // All elements are compressed in full, and by rounding the approach is a little more.
+        if let Some(element) = known.checked_sub(1)
+            && known == self.elements.len()
+            && left <= ROUNDING * approach.abs()
+        {
+            return Some(Front { element, force: self.full(step, element), separation: 0.0 });
+        }
         // The others have borne nothing yet: they are those of the path.
         let approaches = self.bed.approaches();
         let label = approaches[self.elements.get(known)?.knot] + left;
         let after = self.elements.partition_point(|element| approaches[element.knot] <= label);
         let element = after.checked_sub(1).filter(|element| *element >= known)?;
         let Element { knot, length, approach, .. } = self.elements[element];
-        let load = (label - approaches[knot]) / approach;
-        let force = load / step.slope;
+        let beyond = label - approaches[knot];
+        let force = (beyond / approach).min(length) / step.slope;
         // In full contact of a periodic half-space the mean planes cannot approach.
-        (load <= length && force.is_finite()).then_some(Front { element, force, separation: 0.0 })
+        let is_within = beyond <= length * approach + ROUNDING * label && beyond.is_finite();
+        (is_within && force.is_finite()).then_some(Front { element, force, separation: 0.0 })
     }
 
     fn commit(&mut self, step: &Step, time: f64, control: Control, front: Front) {

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Friction;
-use super::state::{SlipState, borne};
+use super::state::{SAME_LOAD, SlipState, borne};
 use crate::bed::{Bed, BedState, Superposition};
 use crate::kernel::Theory;
 use crate::{Error, LoadingPath, SlipError};
@@ -80,9 +80,6 @@ struct Part {
 /// Ratios that differ by less are the same: dT/dP is a quotient of differences.
 const SAME_RATIO: f64 = 1e-12;
 
-/// Pieces shorter than this part of the load are what rounding leaves of a loop that closes.
-const SAME_LOAD: f64 = 1e-14;
-
 /// What is left of a step in both loads after a part of it.
 fn left(part: f64, load: f64, force: f64) -> (f64, f64) {
     ((1.0 - part) * load, (1.0 - part) * force)
@@ -115,15 +112,23 @@ impl<'a> SlipHistory<'a> {
     pub fn to(&mut self, load: f64, tangential_load: f64) -> Result<SlipState, Error> {
         self.bed.history().layering().check(Theory::Slip)?;
         let target = self.bed.at_load(load)?;
-        let force = borne(&self.friction, load, tangential_load)?;
         let before = self.load.load;
-        if load == before {
+        let force = borne(&self.friction, (load, load.max(before)), tangential_load)?;
+        // Loads that are computed differ by their rounding, and do not make all stick.
+        if (load - before).abs() <= SAME_LOAD * before {
+            match load < before {
+                true => self.cut(target),
+                false => self.load = target,
+            }
             self.turn(force)?;
             return Ok(self.state());
         }
         let mut change = force - self.force();
         let exact = change / (load - before);
-        let slope = self.snapped(exact);
+        // Loads have a rounding of their own, which counts where they hardly change.
+        let rounding =
+            SAME_RATIO.max(4.0 * f64::EPSILON * load.max(before) / (load - before).abs());
+        let slope = self.snapped(exact, rounding);
         if slope != exact {
             change = slope * (load - before);
         }
@@ -195,16 +200,27 @@ impl<'a> SlipHistory<'a> {
         self.sums()[0]
     }
 
+    /// What rounding makes of T, a sum over pieces of both signs.
+    fn rounding_of_force(&self) -> f64 {
+        let ends = self.pieces.iter().skip(1).map(|piece| piece.start.load).chain([self.load.load]);
+        let forces = self
+            .pieces
+            .iter()
+            .zip(ends)
+            .map(|(piece, end)| piece.ratio.abs() * (end - piece.start.load));
+        4.0 * f64::EPSILON * forces.sum::<f64>()
+    }
+
     fn is_limit(&self, ratio: f64) -> bool {
         ratio.abs() == self.friction.coefficient()
     }
 
     /// A slope that is the ratio at the top, or the limit, to rounding.
-    fn snapped(&self, slope: f64) -> f64 {
+    fn snapped(&self, slope: f64, rounding: f64) -> f64 {
         let limit = self.friction.coefficient();
         let top = self.pieces.last().map(|piece| piece.ratio);
         let known = top.into_iter().chain([limit, -limit]);
-        let mut near = known.filter(|ratio| (slope - ratio).abs() <= SAME_RATIO * limit);
+        let mut near = known.filter(|ratio| (slope - ratio).abs() <= rounding * limit);
         near.next().unwrap_or(slope)
     }
 
@@ -222,7 +238,8 @@ impl<'a> SlipHistory<'a> {
     /// T to a value at constant load: slip spreads inwards, one piece at a time.
     fn turn(&mut self, force: f64) -> Result<(), Error> {
         let change = force - self.force();
-        if change == 0.0 || self.load.load == 0.0 {
+        let is_held = change == 0.0 || change.abs() <= self.rounding_of_force();
+        if is_held || self.load.load == 0.0 {
             return Ok(());
         }
         let top = change.signum() * self.friction.coefficient();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::DMatrix;
 
 use super::Friction;
-use super::state::{SlipState, borne};
+use super::state::{SAME_LOAD, SlipState, borne};
 use crate::bed::{Bed, BedState};
 use crate::kernel::Theory;
 use crate::{Error, LoadingPath, SlipError};
@@ -320,12 +320,12 @@ impl<'a> PartialSlip<'a> {
 
     /// The state of the path whose contact sticks.
     fn stick(&self, tangential_load: f64) -> Result<BedState, Error> {
-        let tangential_load = borne(&self.friction, self.preload.load, tangential_load)?;
+        let tangential_load =
+            borne(&self.friction, (self.preload.load, self.preload.load), tangential_load)?;
         let lost = tangential_load.abs() / self.friction.coefficient();
-        let stick = (self.preload.load - lost).max(0.0);
-        // At μP itself what is left is the rounding of the quotient.
-        let is_limit = tangential_load.abs() >= self.sliding_load();
-        self.bed.at_load(if is_limit { 0.0 } else { stick })
+        let stick = self.preload.load - lost;
+        // At μP what is left is the rounding of the quotient.
+        self.bed.at_load(if stick <= SAME_LOAD * self.preload.load { 0.0 } else { stick })
     }
 }
 

@@ -72,16 +72,26 @@ fn stiffness_below(bed: &Bed, state: &BedState) -> f64 {
         .map_or(state.stiffness, |k| *k)
 }
 
-/// `Ok` with T if friction bears it under a load; what is beyond the limit by rounding is put on it.
-pub(super) fn borne(friction: &Friction, load: f64, tangential_load: f64) -> Result<f64, Error> {
+/// `Ok` with T if friction bears it under a load; what is beyond the limit by the rounding of so great a load is put on
+/// it.
+pub(super) fn borne(
+    friction: &Friction,
+    (load, greatest): (f64, f64),
+    tangential_load: f64,
+) -> Result<f64, Error> {
     let limit = friction.coefficient() * load;
+    let rounding = LIMIT_ROUNDING * friction.coefficient() * greatest;
     let is_finite = tangential_load.is_finite();
     Error::require("tangential load", tangential_load, is_finite, "finite")?;
-    if tangential_load.abs() > limit * (1.0 + LIMIT_ROUNDING) {
+    if tangential_load.abs() > limit + rounding {
         return Err(crate::SlipError::JointSlides { tangential_load, load, limit }.into());
     }
     Ok(tangential_load.clamp(-limit, limit))
 }
+
+/// Loads that differ by less than this part of them are the same: what rounding leaves of a loop that closes, and of a
+/// quotient.
+pub(super) const SAME_LOAD: f64 = 1e-14;
 
 /// By how much a tangential load may exceed μP and still be meant to be μP: products such as 0.3 · P are rounded.
 const LIMIT_ROUNDING: f64 = 1e-12;

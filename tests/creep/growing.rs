@@ -386,7 +386,19 @@ fn the_whole_path_is_borne() {
         let state = contact.step(0.0, Control::Load(last)).unwrap();
         assert!((state.effective_load / last - 1.0).abs() < 1e-11);
         assert!(contact.step(0.0, Control::Load(1.001 * last)).is_err());
+        // And the whole approach, again and again.
+        let end = bed.approaches()[99];
+        let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+        for control in [part * end, end, part * end, end.next_up(), part * end, end] {
+            let state = contact.step(0.3, Control::Approach(control)).unwrap();
+            assert!((state.approach / control - 1.0).abs() < 1e-11, "{state:?}");
+        }
+        assert!(contact.step(0.0, Control::Approach(1.001 * end)).is_err());
     }
+    for beyond in [last.next_up(), last * (1.0 + 1e-13)] {
+        assert_eq!(bed.at_load(beyond).unwrap(), bed.at_load(last).unwrap());
+    }
+    assert_eq!(bed.at_approach(bed.approaches()[99].next_up()).unwrap().load, last);
     // A load that grows for twenty relaxation times has come to some 1.9 times itself.
     for (load, is_borne) in [(0.5 * last, true), (0.6 * last, false)] {
         let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();

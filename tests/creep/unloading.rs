@@ -172,6 +172,49 @@ fn nothing_is_left_of_a_jump_that_is_taken_back() {
     }
 }
 
+/// What goes on for a hundredth of the time since the contact was made is over: a hold brings nothing back. A load that
+/// is left by rounding is none.
+#[test]
+fn what_is_over_brings_nothing_back() {
+    let (_, history) = history();
+    let bed = Bed::new(&history).unwrap();
+    let load = bed.loads()[50];
+    let corners = PiecewiseLinear::ramp(load, 20.0).unwrap().to(0.4 * load, 20.0).unwrap();
+    let corners = corners.hold(5.0).unwrap();
+    for (time, returns) in [(0.017, None), (0.05, None), (0.2, None), (10.0, Some(40.0))] {
+        let body = Prony::relaxation(0.5, &[(time, 0.5)]).unwrap();
+        let creep = Creep::new(&bed, &body, &corners).unwrap();
+        let unloading = Unloading::new(&creep).unwrap();
+        assert_eq!(unloading.returns(), returns, "{time}");
+        if returns.is_none() {
+            let [then, later] = [40.0, 1e4].map(|time| unloading.at(time).unwrap().contact.load);
+            assert!((later / then - 1.0).abs() < 1e-11, "{time}: {then} {later}");
+        }
+    }
+    let body = Prony::relaxation(0.5, &[(1.0, 0.5)]).unwrap();
+    let corners = PiecewiseLinear::ramp(0.3 * load, 1.0).unwrap();
+    let corners = corners.to(load * (0.1 * 3.0 - 0.3), 1.0).unwrap().hold(1.0).unwrap();
+    let creep = Creep::new(&bed, &body, &corners).unwrap();
+    let unloading = Unloading::new(&creep).unwrap();
+    assert_eq!((unloading.returns(), unloading.at(2.5).unwrap().contact.load), (None, 0.0));
+}
+
+/// Up and down at one rate, of an elastic body: the contact is that of the same load on the way up.
+#[test]
+fn elastic_contact_was_made_at_the_same_load() {
+    let (_, history) = history();
+    let bed = Bed::new(&history).unwrap();
+    let load = bed.loads()[50];
+    let corners = PiecewiseLinear::ramp(load, 1.0).unwrap().to(0.0, 1.0).unwrap();
+    let creep = Creep::new(&bed, &Prony::relaxation(1.0, &[]).unwrap(), &corners).unwrap();
+    let unloading = Unloading::new(&creep).unwrap();
+    for time in [1.1, 1.37, 1.5, 1.93] {
+        let state = unloading.at(time).unwrap();
+        assert!((state.contact_time - (2.0 - time)).abs() < 1e-12, "{state:?}");
+        assert!((state.contact.load / ((2.0 - time) * load) - 1.0).abs() < 1e-11, "{state:?}");
+    }
+}
+
 /// Just after a jump up the contact has returned.
 #[test]
 fn contact_returns_with_a_jump() {

@@ -3,7 +3,7 @@
 use asperity::bed::Bed;
 use asperity::loading::History;
 use asperity::slip::{Friction, PartialSlip, SlipHistory, SlipState, SlipZone};
-use asperity::{Boussinesq, Grid, LoadingSolver, PeriodicBoussinesq};
+use asperity::{Boussinesq, Error, Grid, LoadingSolver, PeriodicBoussinesq, SlipError};
 use asperity_testing::close::relative;
 use proptest::prelude::*;
 
@@ -250,6 +250,71 @@ fn branches_are_the_first_loading_doubled() {
         assert!((branch.displacement - expected).abs() < 1e-13 * turn.displacement, "{share}");
         assert!(relative(branch.tangential_stiffness, half.tangential_stiffness) < 1e-13);
         assert_eq!(branch.stick_nodes, half.stick_nodes);
+        let stick = load - 0.5 * (0.85 - share) * limit / MU;
+        assert!((branch.stick_load - stick).abs() < 1e-13 * load);
+        assert!((branch.slip_area - 1.5 * branch.slipping_nodes as f64).abs() < 1e-10);
+    }
+}
+
+/// Loads that are asked for again, or that differ by their rounding, leave the slip zone as it is.
+#[test]
+fn what_is_held_does_not_stick() {
+    let (_, history) = path(1);
+    let bed = Bed::new(&history).unwrap();
+    for part in 1..40 {
+        let load = 0.0173 * f64::from(part) * bed.last_load();
+        let mut joint = SlipHistory::new(&bed, friction());
+        joint.to(load, 0.0).unwrap();
+        for turn in [0.8, -0.53, 0.31, -0.17, 0.23, 0.9] {
+            let force = turn * MU * load;
+            let state = joint.to(load, force).unwrap();
+            assert!(state.stick_load < 0.99 * load, "{state:?}");
+            for again in [load, load.next_up(), load.next_down(), load] {
+                let held = joint.to(again, force).unwrap();
+                assert_same(&state, &held, 1e-13, [load, state.displacement.abs()]);
+                assert_eq!(state.slipping_nodes, held.slipping_nodes, "{again} {turn}");
+                assert!(relative(held.stick_load, state.stick_load) < 1e-12);
+                assert!(relative(held.tangential_stiffness, state.tangential_stiffness) < 1e-12);
+            }
+        }
+    }
+}
+
+/// An ulp below the limit of friction nothing sticks, whether at once or along a history.
+#[test]
+fn just_below_the_limit_all_slips() {
+    let (_, history) = path(1);
+    let bed = Bed::new(&history).unwrap();
+    for part in 1..40 {
+        let load = 0.0173 * f64::from(part) * bed.last_load();
+        let joint = PartialSlip::new(&bed, load, friction()).unwrap();
+        let force = joint.sliding_load().next_down();
+        let mut history = SlipHistory::new(&bed, friction());
+        history.to(load, 0.0).unwrap();
+        for state in [joint.monotone(force).unwrap(), history.to(load, force).unwrap()] {
+            assert_eq!((state.stick_nodes, state.tangential_stiffness), (0, 0.0), "{load}");
+        }
+    }
+}
+
+/// However short the steps along the limit are, T is known there and the displacement is not.
+#[test]
+fn short_steps_along_the_limit_are_refused() {
+    let (_, history) = path(1);
+    let bed = Bed::new(&history).unwrap();
+    let load = 0.4 * bed.last_load();
+    let mut joint = SlipHistory::new(&bed, friction());
+    joint.to(load, 0.0).unwrap();
+    joint.to(load, MU * load).unwrap();
+    for exponent in 2..13 {
+        for part in 1..=24 {
+            let next = load * (1.0 + 10_f64.powi(-exponent) * f64::from(part) / 24.0);
+            let refused = joint.to(next, MU * next);
+            assert!(
+                matches!(refused, Err(Error::Slip(SlipError::StaysAtLimit { .. }))),
+                "{exponent} {part}: {refused:?}"
+            );
+        }
     }
 }
 
@@ -282,6 +347,16 @@ fn cycles_are_those_of_histories_and_of_nodes() {
             assert!(error < rounding, "{share}: {error:e}");
             assert!(relative(back.displacement, cycle.displacement) < 1e-12);
             assert!(relative(cycle.secant_stiffness, amplitude / cycle.displacement) < 1e-15);
+            let work = std::f64::consts::PI * amplitude * back.displacement;
+            assert!(
+                (cycle.loss_factor - (history.dissipation() - first) / work).abs() * work
+                    < rounding
+            );
+            let interfacial = cycle.interfacial_displacement;
+            assert!(relative(interfacial, back.interfacial_displacement) < 1e-11);
+            for stick in [cycle.stick_load, back.stick_load] {
+                assert!((stick - (load - amplitude / MU)).abs() < 1e-13 * load);
+            }
             let same = joint.cycle_of_displacement(cycle.displacement).unwrap();
             assert!((same.dissipation - cycle.dissipation).abs() < rounding);
             assert!(relative(same.amplitude, amplitude) < 1e-12);
@@ -325,6 +400,8 @@ fn cycles_are_those_of_histories_and_of_nodes() {
         let more = 4.0 * limit * 0.5 * shift;
         assert!(relative(beyond.dissipation, at.dissipation + more) < 1e-14);
         assert!(relative(beyond.secant_stiffness, limit / (1.5 * shift)) < 1e-14);
+        let more = beyond.interfacial_displacement - at.interfacial_displacement;
+        assert!(relative(more, 0.5 * shift) < 1e-12);
     }
 }
 
