@@ -154,9 +154,10 @@ impl<'a, 'b> Unloading<'a, 'b> {
     fn find_return(&self, recession: Recession) -> Option<Onset> {
         let growth = self.creep.growth();
         let load = growth.load();
-        let greatest = load.corners().iter().fold(0.0_f64, |most, corner| most.max(corner.1));
+        let mut greatest = 0.0_f64;
         let slowest = self.creep.kernel().slowest();
-        for (corner, &(time, _)) in load.corners().iter().enumerate() {
+        for (corner, &(time, value)) in load.corners().iter().enumerate() {
+            greatest = greatest.max(value);
             if !recession.has_begun(time) {
                 continue;
             }
@@ -180,5 +181,5 @@ impl<'a, 'b> Unloading<'a, 'b> {
     }
 }
 
-/// Part of the greatest load below which what is missing of a load is rounding.
+/// Part of the greatest load so far below which what is missing of a load is rounding.
 const ROUNDING: f64 = 1e-12;
