@@ -493,21 +493,35 @@ impl<'a> ContactSet<'a> {
 
     /// What is lost where nodes have yielded, and the errors of it if those of gaps are so large.
     pub(crate) fn plastic(&self, instant: &Instant, gap_error: f64) -> [Plastic; 2] {
-        let (stiffness, error) = (self.rate.sum(), self.stiffness_error());
-        let [mut found, mut errors] = [Plastic { sums: [0.0; 2], per_load: [0.0; 2] }; 2];
+        let [mut sums, mut errors] = [[0.0; 2]; 2];
         for node in self.all(Node::Yielded) {
             for (k, factor) in [1.0, self.load[node]].into_iter().enumerate() {
-                found.sums[k] -= factor * instant.gap[node];
-                errors.sums[k] += factor * gap_error;
-                if stiffness > 0.0 {
+                sums[k] -= factor * instant.gap[node];
+                errors[k] += factor * gap_error;
+            }
+        }
+        let [found, rate_errors] = self.plastic_per_load();
+        [Plastic { sums, per_load: found }, Plastic { sums: errors, per_load: rate_errors }]
+    }
+
+    /// How much of it each unit of the sum of pressures adds, and the errors.
+    pub(crate) fn plastic_per_load(&self) -> [[f64; 2]; 2] {
+        let (stiffness, error) = (self.rate.sum(), self.stiffness_error());
+        let [mut found, mut errors] = [[0.0; 2]; 2];
+        if stiffness > 0.0 {
+            for node in self.all(Node::Yielded) {
+                for (k, factor) in [1.0, self.load[node]].into_iter().enumerate() {
                     let rate = factor * self.closing[node] / stiffness;
-                    found.per_load[k] += rate;
-                    errors.per_load[k] +=
-                        (factor * self.closing_error + rate.abs() * error) / stiffness;
+                    found[k] += rate;
+                    errors[k] += (factor * self.closing_error + rate.abs() * error) / stiffness;
                 }
             }
         }
         [found, errors]
+    }
+
+    pub(crate) fn dense(&self) -> &'a Dense {
+        self.dense
     }
 
     /// Whether approaches are those of the mean planes, where no distant point stays put.

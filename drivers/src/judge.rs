@@ -7,7 +7,7 @@ use asperity::{
 };
 use nalgebra::DVector;
 
-use crate::dense::{ContactSet, Dense};
+use crate::dense::{ContactSet, Dense, Node};
 use crate::refusal::Circumstances;
 use crate::verdict::{Tally, Verdict, Violation, ensure};
 use crate::walk::{Demands, Walk};
@@ -159,6 +159,9 @@ impl Judge {
         for node in 0..nodes {
             let (p, own) = (pressure[node], dense.own_length(solution.fields.gap[node]));
             tally.close("gap", own, gap[node], rounding)?;
+            let moved = dense.own_length(solution.fields.displacement[node]);
+            let expected = displacement[node] - dense.gauge() * sum;
+            tally.close("displacement", moved, expected, rounding)?;
             let in_contact = solution.fields.contact_map[node];
             ensure!(
                 in_contact == (p > 0.0 || own <= 0.0),
@@ -179,6 +182,13 @@ impl Judge {
             state.contact_nodes
         );
         tally.close("mean gap", found.mean_gap, mean_gap, rounding)?;
+        let rms_height = dense.gap().variance().sqrt();
+        let approach = dense.own_length(state.approach);
+        let expected = rms_height.max(approach).max(dense.own_displacement(sum));
+        if expected > 0.0 {
+            let length = dense.own_length(solution.certificate.length);
+            tally.close("length of errors", length, expected, rounding)?;
+        }
         let energy = 0.5 * (pressure.dot(&displacement) - dense.gauge() * sum * sum);
         tally.close("energy", found.energy, energy, rounding * sum)?;
         self.check_stiffness(solution, &contact, &mut tally)?;
@@ -195,39 +205,15 @@ impl Judge {
         contact: &[usize],
         tally: &mut Tally,
     ) -> Result<(), Violation> {
-        let found = self.dense.scalars(&solution.contact);
-        let Some(interfacial) = found.interfacial else {
+        if solution.contact.interfacial_stiffness.is_none() {
             ensure!(!self.settings.stiffness, "there is no stiffness");
             return Ok(());
-        };
-        ensure!(
-            found.stiffness.is_none() == self.dense.is_gauged(),
-            "the contact stiffness is {:?}",
-            found.stiffness
-        );
+        }
         let set = ContactSet::new(&self.dense, contact, self.settings.tolerance);
-        let Some(set) = set.filter(|set| set.closing_error < 0.1) else {
-            return Ok(());
-        };
-        let [(stiffness, error), (expected, interfacial_error)] = set.stiffnesses();
-        if let Some(found) = found.stiffness {
-            tally.close("contact stiffness", found, stiffness, error * stiffness.abs())?;
+        match set.filter(|set| set.closing_error < 0.1) {
+            Some(set) => rates_are_those_of(&set, solution, self.grid.cell_area(), tally),
+            None => Ok(()),
         }
-        if contact.len() == self.grid.nodes() {
-            ensure!(
-                interfacial == f64::INFINITY,
-                "in full contact the interfacial stiffness is {interfacial:e}"
-            );
-        } else if interfacial_error < 0.1 {
-            let allowed = interfacial_error * expected.abs();
-            tally.close("interfacial stiffness", interfacial, expected, allowed)?;
-        }
-        let area = self.grid.cell_area() * set.rate.sum();
-        let allowed = (set.rate_error() + error * set.rate.amax()) / area.abs();
-        for (found, rate) in solution.pressure_rate.iter().zip(set.rate.iter()) {
-            tally.close("rate of pressure", *found, rate / area, allowed)?;
-        }
-        Ok(())
     }
 
     /// What the gaps of a solution may be off by.
@@ -315,4 +301,46 @@ impl Judge {
         let nodes = walk.contact().to_vec();
         Ok(ContactSet::new(&self.dense, &nodes, 0.0).map(|set| (set, nodes)))
     }
+}
+
+/// Stiffnesses, the pressure of each newton and what is lost of it are those of a set of nodes in contact.
+pub(crate) fn rates_are_those_of(
+    set: &ContactSet<'_>,
+    solution: &FixedLoadSolution,
+    cell_area: f64,
+    tally: &mut Tally,
+) -> Result<(), Violation> {
+    let found = set.dense().scalars(&solution.contact);
+    ensure!(
+        found.stiffness.is_none() == set.is_gauged(),
+        "the contact stiffness is {:?}",
+        found.stiffness
+    );
+    let [(stiffness, error), (expected, interfacial_error)] = set.stiffnesses();
+    if let Some(found) = found.stiffness {
+        tally.close("contact stiffness", found, stiffness, error * stiffness.abs())?;
+    }
+    let interfacial = found.interfacial.unwrap_or(f64::NAN);
+    if set.all(Node::Out).next().is_none() {
+        ensure!(
+            interfacial == f64::INFINITY,
+            "in full contact the interfacial stiffness is {interfacial:e}"
+        );
+    } else if interfacial_error < 0.1 {
+        let allowed = interfacial_error * expected.abs();
+        tally.close("interfacial stiffness", interfacial, expected, allowed)?;
+    }
+    let area = cell_area * set.rate.sum();
+    let allowed = (set.rate_error() + error * set.rate.amax()) / area.abs();
+    for (found, rate) in solution.pressure_rate.iter().zip(set.rate.iter()) {
+        tally.close("rate of pressure", *found, rate / area, allowed)?;
+    }
+    if let Some(plastic) = found.plastic {
+        let [expected, errors] = set.plastic_per_load();
+        for (k, what) in ["plastic volume by load", "plastic work by load"].into_iter().enumerate()
+        {
+            tally.close(what, plastic.per_load[k], expected[k], errors[k])?;
+        }
+    }
+    Ok(())
 }

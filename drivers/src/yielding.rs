@@ -5,6 +5,7 @@ use asperity::{Error, LoadingSolver, LoadingState, PeriodicBoussinesq};
 
 use crate::dense::{ContactSet, Instant, Node};
 use crate::draw::Draw;
+use crate::judge::rates_are_those_of;
 use crate::kernels;
 use crate::paths::Trial;
 use crate::problem::Sample;
@@ -122,11 +123,23 @@ impl Trial<'_> {
         let single = self.dense.scalars(&solution.contact);
         // On one set the pressures of elastic nodes differ by what sums up to nothing: approaches by no more than gaps.
         tally.close("approach", single.own_approach, found.own_approach, 2.0 * error)?;
+        let carried = 2.0 * set.norms.carried * error;
+        for node in 0..set.states().len() {
+            let found = fields.gap[node] - fields.plastic_depth[node];
+            let (found, expected) = (self.dense.own_length(found), instant.gap[node]);
+            tally.close("gap", found, expected, carried)?;
+        }
         if let Some(plastic) = &solution.contact.plastic {
             let volume = plastic.volume / self.grid.cell_area();
-            let [expected, errors] = set.plastic(instant, 2.0 * set.norms.carried * error);
+            let [expected, errors] = set.plastic(instant, carried);
             let volume = self.dense.own_length(volume);
             tally.close("plastic volume", volume, expected.sums[0], errors.sums[0])?;
+        }
+        let nodes = [Node::Elastic, Node::Yielded].map(|node| set.all(node).collect::<Vec<_>>());
+        let nodes = [&nodes[0][..], &nodes[1][..]];
+        let solved = ContactSet::beside(&self.dense, nodes, TOLERANCE, set.norms);
+        if let Some(solved) = solved.filter(|solved| solved.closing_error < 0.1) {
+            rates_are_those_of(&solved, &solution, self.grid.cell_area(), tally)?;
         }
         tally.checked += 1;
         Ok(())

@@ -3,7 +3,8 @@
 use asperity::fixed_load::FixedLoadBuilder;
 use asperity::loading::History;
 use asperity::{
-    ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, LoadingSolver, LoadingState,
+    ContactState, ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, LoadingSolver,
+    LoadingState,
 };
 
 use super::dense::{Dense, near};
@@ -65,7 +66,24 @@ impl Pressed<'_> {
             assert_eq!(found.yielded_nodes, expected.yielded_nodes, "{context}");
             near(found.work, expected.work, allowed * path.energy, &context);
         }
+        // Rates belong to the set, and in the load nothing cancels.
+        for (found, expected) in rates(state).into_iter().zip(rates(path)) {
+            assert_eq!(found.is_some(), expected.is_some(), "{context}");
+            let (found, expected) = (found.unwrap_or(0.0), expected.unwrap_or(0.0));
+            near(found, expected, allowed * expected.abs(), &context);
+        }
+        if state.contact_nodes > 0 {
+            let sum = self.row.kernel.grid().cell_area() * solution.pressure_rate.sum();
+            near(sum, 1.0, ALLOWED, &context);
+        }
     }
+}
+
+/// Stiffnesses, and the plastic volume and work of each newton.
+fn rates(state: &ContactState) -> [Option<f64>; 4] {
+    let per_load = state.plastic.map(|plastic| (plastic.volume_per_load, plastic.work_per_load));
+    let [volume, work] = [per_load.map(|pair| pair.0), per_load.map(|pair| pair.1)];
+    [state.contact_stiffness, state.interfacial_stiffness, volume, work]
 }
 
 /// Loads all along the path, and behind full contact.

@@ -114,8 +114,7 @@ impl HeightMap {
     /// ```
     #[must_use]
     pub fn mean_absolute_height(&self) -> f64 {
-        let (unit, mean) = (self.unit(), self.mean_height());
-        unit * self.mean(|z| (z / unit - mean / unit).abs())
+        self.unit() * self.mean_about_mean(f64::abs)
     }
 
     /// Root mean square height about the mean height \[m\]; no tilt is removed.
@@ -125,8 +124,7 @@ impl HeightMap {
     /// ```
     #[must_use]
     pub fn rms_height(&self) -> f64 {
-        let (unit, mean) = (self.unit(), self.mean_height());
-        unit * self.mean(|z| (z / unit - mean / unit).powi(2)).sqrt()
+        self.unit() * self.mean_about_mean(|z| z * z).sqrt()
     }
 
     /// Skewness of the heights, 0 for a symmetric distribution; NaN if all are equal.
@@ -190,8 +188,17 @@ impl HeightMap {
 
     /// Mean of a power of the heights about their mean, over their rms height; NaN if all are equal.
     fn standardised(&self, power: i32) -> f64 {
-        let (mean, rms) = (self.mean_height(), self.rms_height());
-        self.mean(|z| ((z - mean) / rms).powi(power))
+        let rms = self.mean_about_mean(|z| z * z).sqrt();
+        self.mean_about_mean(|z| (z / rms).powi(power))
+    }
+
+    /// Mean of a function of the heights about their mean, in [`Self::unit`]. Counted from the lowest first, they lose
+    /// nothing to a height that all have.
+    fn mean_about_mean(&self, value: impl Fn(f64) -> f64) -> f64 {
+        let unit = self.unit();
+        let lowest = self.min_height() / unit;
+        let mean = self.mean(|z| z / unit - lowest);
+        self.mean(|z| value(z / unit - lowest - mean))
     }
 
     /// A power of two of the size of the heights, by which they are divided so that neither sums nor squares over-
@@ -281,6 +288,21 @@ mod tests {
         // Along x (0, 0, 6) / 2, along y (0, 0, 0, 6) / 3.
         let gradient = map.rms_gradient(&Grid::new(2, 3, 2.0, 3.0)?)?;
         assert!((gradient - (3.0_f64 + 1.0).sqrt()).abs() < 1e-15);
+        Ok(())
+    }
+
+    /// Heights that differ in their last bits alone: their mean has none between them.
+    #[test]
+    fn statistics_of_heights_far_from_zero() -> Result<(), Error> {
+        let near = HeightMap::new(dmatrix![1.0, 1.0, 1.0; 1.0, 2.0, 7.0])?;
+        let unit = f64::EPSILON;
+        let far = HeightMap::new(near.matrix().map(|z| 1.0 + unit * z))?;
+        let (sq, expected) = (far.rms_height(), unit * near.rms_height());
+        // A few rounding errors.
+        assert!((sq / expected - 1.0).abs() < 1e-15);
+        let (sa, expected) = (far.mean_absolute_height(), unit * near.mean_absolute_height());
+        assert!((sa / expected - 1.0).abs() < 1e-15);
+        assert!((far.skewness() / near.skewness() - 1.0).abs() < 1e-14);
         Ok(())
     }
 
