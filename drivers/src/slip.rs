@@ -17,6 +17,8 @@ const WELL_KNOWN: f64 = 1e-9;
 /// By how much a tangential load may be off, over the greatest μP: ratios that differ by 10⁻¹² of μ are taken for one,
 /// and pieces of 10⁻¹⁴ of the load are left out.
 const SNAPPED: f64 = 4e-12;
+/// Ratios above this part of μ are taken for it.
+const AT_LIMIT: f64 = 1.0 - 1e-12;
 /// Loads that lose digits, which are drawn as well \[N\].
 const UNDERFLOWS: f64 = 1e-290;
 
@@ -299,13 +301,17 @@ impl Trial<'_> {
         let pieces = self.pieces()?;
         ensure!(pieces.iter().all(|piece| piece.2.abs() <= coefficient), "beyond μ: {pieces:?}");
         let [first, last] = self.springs.stiffnesses(self.most);
-        let off = self.springs.off(pieces.into_iter());
+        let off = self.springs.off(pieces.iter().copied());
         let forces = 2.0 * forces * (last / first).max(1.0);
         self.tally.not_negative("what forces of springs are off", -off, forces)?;
         let sticks = self.springs.sticks_up_to(forces);
         let least = sticks * (1.0 - 1e-9);
         ensure!(state.stick_load >= least, "{sticks:e} sticks, but {:e}", state.stick_load);
-        ensure!(state.stick_load <= load, "{:e} sticks of {load:e}", state.stick_load);
+        // What is at the limit slips.
+        let at_limit =
+            pieces.iter().rev().take_while(|piece| piece.2.abs() > AT_LIMIT * coefficient);
+        let most = at_limit.last().map_or(load, |piece| piece.0) * (1.0 + SNAPPED);
+        ensure!(state.stick_load <= most.min(load), "{:e} of {most:e} sticks", state.stick_load);
         let nodes = self.bed.at_load(load).map_or(0, |state| state.contact_nodes);
         ensure!(state.stick_nodes + state.slipping_nodes == nodes, "{state:?} of {nodes} nodes");
         if load == 0.0 {

@@ -165,6 +165,17 @@ mod tests {
         assert_eq!(certificate.length, 2.0);
     }
 
+    /// The worst node counts, and below every hardness the excess is negative.
+    #[test]
+    fn pressures_beyond_their_hardness() {
+        let excess = |nodes: [(f64, f64); 2]| {
+            let certificate = Conditions { sum: 4.0, length: 2.0 }.check([].into_iter());
+            certificate.with_hardness(nodes.into_iter()).excess_pressure
+        };
+        assert_eq!(excess([(3.0, 2.0), (1.0, 4.0)]), Some(0.5));
+        assert_eq!(excess([(1.0, 4.0), (1.0, 2.0)]), Some(-0.5));
+    }
+
     /// Nothing in contact is no error, and without any length there is none to divide by.
     #[test]
     fn nothing_in_contact() {

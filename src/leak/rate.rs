@@ -65,7 +65,7 @@ pub struct CriticalConstriction {
     /// The gap there \[m\].
     pub gap: f64,
     /// The share of the pressure drop from one side of its cell to the other: the greatest difference between its
-    /// sides.
+    /// sides. Of a [gas](Seal::with_gas) it is the share of the drop of p².
     pub pressure_drop: f64,
     /// The share of the power Q Δp that is lost in the square of 9 × 9 cells about it. If all of the fluid passes here,
     /// it is the share of the pressure drop that falls there.

@@ -245,6 +245,7 @@ fn loads_relax_at_a_given_approach() {
     assert_eq!(times.len(), 61);
     for (time, knot) in times.iter().zip(bed.approaches()).skip(1) {
         assert!(course.value_at(*time) >= knot * (1.0 - 1e-12));
+        assert!(course.value_at(*time * (1.0 - 1e-12)) <= knot * (1.0 + 1e-11));
     }
     let falling = PiecewiseLinear::ramp(approach, 1.0).unwrap().to(0.5 * approach, 1.0).unwrap();
     let falling = Relaxation::new(&bed, &body, &falling).unwrap();

@@ -40,6 +40,35 @@ fn gases_flow_by_the_square_of_their_pressure() {
     }
 }
 
+/// The equation is that of a liquid for p²: through any gap rates and fluxes are those of a liquid, times one number, and
+/// shares and permeabilities the same.
+#[test]
+fn gases_take_the_way_of_liquids() {
+    let grid = Grid::new(9, 7, 1.5, 1.0).unwrap();
+    let gap = DMatrix::from_fn(9, 7, |ix, iy| 0.1 + ((ix * 31 + iy * 17 + ix * iy) % 7) as f64);
+    let (open, on) = (gap.map(|_| false), (&grid, Boundary::Periodic));
+    let liquid = Seal::new(1.0 / 12.0, 3.0, Axis::Y).unwrap();
+    let gas = liquid.with_gas(0.5).unwrap();
+    let [liquid, gas] = [liquid, gas].map(|seal| seal.leak(&gap, &open, on).unwrap());
+    // 1 + Δp / 2 p₂; one network is solved once, and then a few roundings.
+    let same = |found: f64, expected: f64| {
+        assert!((found - expected).abs() <= 1e-14 * expected.abs(), "{found:e} {expected:e}");
+    };
+    let many = |found: &[f64], expected: &[f64]| {
+        assert_eq!(found.len(), expected.len());
+        found.iter().zip(expected).for_each(|(found, expected)| same(*found, 4.0 * expected));
+    };
+    many(&[gas.leak_rate], &[liquid.leak_rate]);
+    many(&[gas.mean_field_leak_rate], &[liquid.mean_field_leak_rate]);
+    many(&gas.sections, &liquid.sections);
+    many(gas.flux_x.as_slice(), liquid.flux_x.as_slice());
+    many(gas.flux_y.as_slice(), liquid.flux_y.as_slice());
+    same(gas.permeability, liquid.permeability);
+    same(gas.transverse_permeability.unwrap(), liquid.transverse_permeability.unwrap());
+    assert!(liquid.constriction.is_some());
+    assert_eq!(gas.constriction, liquid.constriction);
+}
+
 /// Rows of gaps 1, 2 and 3: what is not wider than 2 is as good as in contact.
 #[test]
 fn nothing_flows_through_the_narrowest_gaps() {

@@ -3,7 +3,9 @@
 use asperity::bed::Bed;
 use asperity::loading::History;
 use asperity::slip::{Friction, PartialSlip, SlipHistory, SlipState, SlipZone};
-use asperity::{Boussinesq, Error, Grid, LoadingSolver, PeriodicBoussinesq, SlipError};
+use asperity::{
+    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SlipError,
+};
 use asperity_testing::close::relative;
 use proptest::prelude::*;
 
@@ -253,6 +255,40 @@ fn branches_are_the_first_loading_doubled() {
         let stick = load - 0.5 * (0.85 - share) * limit / MU;
         assert!((branch.stick_load - stick).abs() < 1e-13 * load);
         assert!((branch.slip_area - 1.5 * branch.slipping_nodes as f64).abs() < 1e-10);
+    }
+}
+
+/// dT/dU where T goes on as it went is the secant of a step in which no node begins to slip.
+#[test]
+fn tangential_stiffnesses_are_secants() {
+    let grid = Grid::new(16, 12, 1.0, 1.5).unwrap();
+    let free = Boussinesq::new(grid, 2.0).unwrap();
+    let periodic = PeriodicBoussinesq::new(grid, 2.0).unwrap();
+    let bodies: [&dyn InfluenceKernel; 2] = [&free, &periodic];
+    for body in bodies {
+        let (_, history) = rough_path(body, 3, 0.7);
+        let bed = Bed::new(&history).unwrap();
+        let mut joint = SlipHistory::new(&bed, friction());
+        // On the first loading, back, with more load, and with less.
+        for (load, force, sign) in [
+            (0.5, 0.6, 1.0),
+            (0.5, 0.8, 1.0),
+            (0.5, 0.1, -1.0),
+            (0.5, -0.3, -1.0),
+            (0.8, -0.3, -1.0),
+            (0.8, -0.5, -1.0),
+            (0.6, -0.5, -1.0),
+            (0.6, 0.2, 1.0),
+        ] {
+            let (load, limit) = (load * bed.last_load(), 0.5 * MU * bed.last_load());
+            let state = joint.to(load, force * limit).unwrap();
+            // 10⁻⁷ of the limit, of which rounding is 10⁻⁹.
+            let step = sign * 1e-7 * limit;
+            let next = joint.clone().to(load, force * limit + step).unwrap();
+            let secant = step / (next.displacement - state.displacement);
+            let context = format!("{load} {force}: {state:?} {secant}");
+            assert!(relative(state.tangential_stiffness, secant) < 1e-6, "{context}");
+        }
     }
 }
 

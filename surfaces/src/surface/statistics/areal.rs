@@ -239,6 +239,9 @@ mod tests {
             let both = |x: f64, y: f64| roof(x, middle[0]) + 0.5 * roof(y, middle[1]);
             let both = map((41, 41), cell, both)?.areal_parameters()?;
             assert!((both.sdr - (1.3125_f64.sqrt() - 1.0)).abs() < 1e-12, "{both:?}");
+            // From 0 up to 10 cells along x, with a mean of 20 · 21 / (2 · 41) of half a cell.
+            let [mean, most] = [210.0 / 41.0 * cell.0, 10.0 * cell.0];
+            assert!((along.sv - mean).abs() < 1e-12 && (along.sp - most + mean).abs() < 1e-12);
         }
         Ok(())
     }

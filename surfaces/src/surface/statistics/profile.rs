@@ -177,6 +177,20 @@ mod tests {
         Ok(())
     }
 
+    /// One node of nine is raised: two heights, of the shares q = 1/9 and 1 − q, have Ra = 2 q (1 − q) h, Rsk = (1 − 2q)
+    /// / √(q (1 − q)) and Rku = 1 / (q (1 − q)) − 3.
+    #[test]
+    fn two_heights() -> Result<(), Error> {
+        let surface = profile(9 * 41, |x| if x % 9.0 == 4.0 { 1e-6 } else { 0.0 })?;
+        let found = surface.profile_parameters(None)?;
+        let expected = [16.0 / 81.0 * 1e-6, 7.0 / 8.0_f64.sqrt(), 81.0 / 8.0 - 3.0];
+        for (found, expected) in [found.ra, found.rsk, found.rku].into_iter().zip(expected) {
+            // Of some hundred terms, and what rounds of a line that is none.
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found:e} {expected:e}");
+        }
+        Ok(())
+    }
+
     /// A wave as long as the cut-off keeps half of its amplitude, and one of a tenth all but exp(−100 ln 2) of it; a
     /// long one is waviness.
     #[test]
@@ -193,6 +207,7 @@ mod tests {
                 found.rq
             );
             assert!((found.evaluation_length / 7.2e-3 - 1.0).abs() < 1e-12);
+            assert_eq!(found.cutoff, Some(cutoff * 1e-6));
             if wave <= cutoff {
                 assert!(
                     (found.rz / (2.0 * share * 1e-6) - 1.0).abs() < 0.03,

@@ -171,6 +171,9 @@ fn densities_of_profiles() -> Result<(), Error> {
             // The definition, term by term.
             for (bin, k) in bins.iter().zip(1..) {
                 close(bin.wavevector, TAU * k as f64 / side);
+                // Forwards and backwards, and each with all waves across.
+                let ways = if 2 * k == n { 1 } else { 2 };
+                assert_eq!(bin.waves, ways * map_along_x.grid().ny(), "{axis:?} {k}");
                 let profile = |profile: nalgebra::DVectorView<f64>| {
                     let parts = profile.iter().enumerate().map(|(i, z)| {
                         let angle = TAU * ((i * k) % n) as f64 / n as f64;
