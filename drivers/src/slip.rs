@@ -307,9 +307,9 @@ impl Trial<'_> {
         let sticks = self.springs.sticks_up_to(forces);
         let least = sticks * (1.0 - 1e-9);
         ensure!(state.stick_load >= least, "{sticks:e} sticks, but {:e}", state.stick_load);
-        // What is at the limit slips.
-        let at_limit =
-            pieces.iter().rev().take_while(|piece| piece.2.abs() > AT_LIMIT * coefficient);
+        // What is at the limit slips, in one direction.
+        let limit = pieces.last().map_or(0.0, |piece| AT_LIMIT * coefficient * piece.2.signum());
+        let at_limit = pieces.iter().rev().take_while(|piece| piece.2 / limit > 1.0);
         let most = at_limit.last().map_or(load, |piece| piece.0) * (1.0 + SNAPPED);
         ensure!(state.stick_load <= most.min(load), "{:e} of {most:e} sticks", state.stick_load);
         let nodes = self.bed.at_load(load).map_or(0, |state| state.contact_nodes);
