@@ -111,12 +111,25 @@ impl Loads {
     }
 }
 
+impl Options {
+    /// `Ok` if the surface is none of the files that are written.
+    fn check_surface(&self, asked: &[At]) -> Result<(), Failure> {
+        outcome::check_input(&self.surface, &self.out, &["load.csv"])?;
+        let Some(directory) = &self.save else { return Ok(()) };
+        let fields = asked.iter().flat_map(|at| FIELDS.map(|name| field_file(name, *at)));
+        let fields: Vec<String> = fields.collect();
+        let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
+        outcome::check_input(&self.surface, directory, &fields)
+    }
+}
+
 /// Solves for each load in turn.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
     }
     let asked = options.loads.all()?;
+    options.check_surface(&asked)?;
     let bodies = options.elasticity.required()?;
     let conductions = options.conduct.conductions(bodies.e_star)?;
     let layering = bodies.layering(boundary(options.periodic));
@@ -357,11 +370,20 @@ fn print_words(
     }
 }
 
+/// The fields that are saved.
+const FIELDS: [&str; 2] = ["pressure", "gap"];
+
+/// The name of the file of a field.
+fn field_file(field: &str, at: At) -> String {
+    format!("{field}_{}.npy", at.name())
+}
+
 /// Writes the fields of a state.
 fn save(directory: &Path, solution: &FixedLoadSolution, at: At) -> Result<Vec<PathBuf>, Failure> {
-    let fields = [("pressure", &solution.fields.pressure), ("gap", &solution.fields.gap)];
+    let [pressure, gap] = FIELDS;
+    let fields = [(pressure, &solution.fields.pressure), (gap, &solution.fields.gap)];
     let written = fields.map(|(name, field)| {
-        let file = directory.join(format!("{name}_{}.npy", at.name()));
+        let file = directory.join(field_file(name, at));
         match write_npy(&file, field) {
             Ok(()) => Ok(file),
             Err(error) => Err(Failure::writing(&file, error)),

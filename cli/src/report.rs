@@ -38,6 +38,12 @@ pub(crate) struct Options {
 /// Reads the records and writes the page.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outcome::check_place(&options.out)?;
+    if let Some(record) = options.records.iter().find(|file| outcome::is_same(&options.out, file)) {
+        return Err(Failure::request(format!(
+            "--out would replace the record {}: name another file",
+            record.display()
+        )));
+    }
     if let Some(folder) = options.with.iter().find(|folder| !folder.is_dir()) {
         return Err(Failure::request(format!("there is no folder {}", folder.display())));
     }

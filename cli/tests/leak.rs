@@ -55,6 +55,25 @@ fn leaks_are_printed_and_drawn() -> Result<(), Box<dyn Error>> {
         assert!(bytes.starts_with(b"\x89PNG"), "{picture}");
     }
 
+    // Each column is what the object calls so.
+    let said = run(&folder, &[&LEAK[..], &["--json", "--states", "12", "--out", "json"]].concat())?;
+    let document: Value = serde_json::from_slice(&said.stdout)?;
+    let constriction = [
+        ("constriction_ix", "/constriction/node/0"),
+        ("constriction_iy", "/constriction/node/1"),
+        ("constriction_gap", "/constriction/gap"),
+        ("constriction_pressure_drop", "/constriction/pressure_drop"),
+        ("constriction_dissipation", "/constriction/dissipation"),
+    ];
+    for (line, state) in lines[1..].iter().zip(document["states"].as_array().ok_or("no states")?) {
+        for (name, cell) in lines[0].iter().zip(line) {
+            let known = constriction.iter().find(|(column, _)| column == name);
+            let there = known.map_or(format!("/{name}"), |(_, there)| (*there).to_string());
+            let expected = state.pointer(&there).and_then(Value::as_f64);
+            assert_eq!(cell.parse::<f64>().ok(), expected, "{name}");
+        }
+    }
+
     // At the loads of the table: the same rates.
     for k in [3, 8, 11] {
         let newtons = lines[1 + k][load];

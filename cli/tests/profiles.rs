@@ -7,6 +7,8 @@ use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
 
+use asperity::io::write_npy;
+use asperity::nalgebra::DMatrix;
 use common::{Scratch, is_refused, output, run, said};
 use serde_json::Value;
 
@@ -99,6 +101,18 @@ fn the_roughness_of_a_profile_is_told() -> Done {
         }
         let words = String::from_utf8(run(&folder.0, &line)?.stdout)?;
         assert!(words.contains(&format!("{letter}a 31")) && words.contains("ISO 21920"), "{words}");
+    }
+    // The same along y is no map either.
+    let column = DMatrix::from_fn(1, 4000, |_, iy| amplitude * (TAU * iy as f64 / 100.0).sin());
+    write_npy(folder.join("column.npy"), &column)?;
+    let of_x = object(&folder.0, "info sine.csv --cutoff 0.25mm")?;
+    let of_y = object(&folder.0, "info column.npy --side 0.25um --cutoff 0.25mm")?;
+    assert!(of_y["texture"].is_null());
+    for name in ["ra", "rz", "rsm", "evaluation_length"] {
+        let [found, expected] = [&of_y, &of_x].map(|told| told["profile"][name].as_f64());
+        let ratio = found.ok_or("no number")? / expected.ok_or("no number")?;
+        // Positions and heights of the text are rounded by its units.
+        assert!((ratio - 1.0).abs() < 1e-9, "{name}: {found:?} {expected:?}");
     }
     assert!(
         said(&output(&folder.0, "info sine.csv --cutoff 0.6mm")?)

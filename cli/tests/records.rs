@@ -343,13 +343,23 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
     let measured = fs::read(common::data("surface_files/missing_f64.x3p"))?;
     fs::write(folder.join("cut.x3p"), &measured[..measured.len() / 2])?;
     fs::create_dir(folder.join("folder"))?;
-    fs::copy(common::data("selfaffine_48.npy"), folder.join("input.npy"))?;
+    for name in ["input.npy", "gap_1N.npy", "path.csv", "load.csv"] {
+        fs::copy(common::data("selfaffine_48.npy"), folder.join(name))?;
+    }
     for (line, words) in [
         (
             "path --surface input.npy --side 1e-2 --e-star 1 --record input.npy",
             &["--record would replace the surface"][..],
         ),
         ("path --nodes 32 --record nowhere/r.npz", &["nowhere/r.npz"]),
+        ("path --surface path.csv --side 1 --e-star 1 --out .", &["path.csv would be replaced"]),
+        ("load --surface load.csv --side 1 --e-star 1 --load 1 --out .", &["load.csv would be"]),
+        (
+            "load --surface gap_1N.npy --side 1 --e-star 1 --at 1N --save .",
+            &["gap_1N.npy would be replaced"],
+        ),
+        ("report r.npz --out r.npz", &["--out would replace the record r.npz"]),
+        ("gather . --loads 1", &["--loads takes at least 2"]),
         ("path --nodes 32 --record folder", &["folder"]),
         ("path --nodes 32 --fill", &["--fill", "generated"]),
         ("path --nodes 32 --level plane", &["--level"]),

@@ -3,9 +3,9 @@
 use asperity::adhesion::{
     Adhesion, AdhesiveEnd, AdhesiveEvent, AdhesiveFields, AdhesivePath, AdhesiveState, NodeState,
 };
-use asperity::{ContactTarget, Error, KernelTable};
+use asperity::{ContactState, ContactTarget, Error, KernelTable};
 use asperity_testing::equilibria::Equilibria;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::draw::Draw;
 use crate::kernels::Class;
@@ -20,10 +20,17 @@ const TRIED: usize = 8;
 /// relative to their greatest: rounding of solutions whose condition is 10³ at most, with two digits to spare.
 const GAP: f64 = 1e-9;
 const ENERGY: f64 = 1e-9;
+/// Gaps and pressures of a surface that has nodes of one height. They come near together, and where not all of them are
+/// stable there, some are left beyond their law by the slack of a window, 10⁻⁹ of the stress, which soft nodes amplify.
+const TIED: f64 = 1e-7;
+/// Rates relative to those of their equations, for each unit of the condition: rounding, three digits that a window may
+/// lose before it ends, and two to spare.
+const RATE: f64 = 1e-11;
 
-/// Draws a surface on a half-space, a law of adhesion and a walk of approaches. Energies balance and jumps lose at every
-/// state; where the walk turns, pressures and gaps are on the law by dense displacements; on few nodes the state is the
-/// extreme one of all equilibria; and a closed loop restores its state.
+/// Draws a surface on a half-space, a law of adhesion and a walk of approaches. Energies balance and jumps lose at
+/// every state; where the walk turns, pressures and gaps are on the law by dense displacements, and numbers of nodes,
+/// energies, mean gap and stiffnesses follow from them; on few nodes the state is the extreme one of all equilibria;
+/// and a closed loop restores its state.
 ///
 /// # Errors
 ///
@@ -92,6 +99,8 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         exact: Equilibria::of(path.problem(), path.law()),
         gauge: table.gauge().unwrap_or_default(),
         greatest: path.law().stress(),
+        energy: 0.0,
+        slack: if is_distinct(sample) { GAP } else { TIED },
         path,
         sample,
         tally: Tally::default(),
@@ -141,6 +150,10 @@ struct Trial<'a> {
     gauge: f64,
     /// The greatest pressure or mean pressure so far, or σ₀.
     greatest: f64,
+    /// The greatest energy so far.
+    energy: f64,
+    /// What gaps and pressures may be off by: [`GAP`] or [`TIED`].
+    slack: f64,
     sample: &'a Sample,
     tally: Tally,
 }
@@ -164,7 +177,7 @@ impl Trial<'_> {
             && is_distinct(self.sample)
         {
             let left = (&start.gap - &back.gap).amax();
-            let allowed = GAP * self.length();
+            let allowed = self.slack * self.length();
             self.tally.close("a gap behind a loop", left, 0.0, allowed)?;
         }
         self.path.unload()?;
@@ -223,6 +236,7 @@ impl Trial<'_> {
             dissipated = state.dissipated;
             let sum = energies.iter().sum();
             self.tally.close("work", state.work, sum, ENERGY * greatest)?;
+            self.energy = self.energy.max(greatest);
             // A window goes on from what rounding has made of its first state.
             let mean = state.contact.load.abs() / self.path.grid().nominal_area();
             self.greatest = self.greatest.max(mean);
@@ -240,30 +254,99 @@ impl Trial<'_> {
         self.greatest = pressure.amax().max(self.greatest);
         let greatest = self.greatest;
         let length = self.length() + approach.abs();
+        // Of all gaps, of pressures times displacements, and of adhesion over the area of a cell.
+        let (mut gaps, mut elastic, mut adhesive) = (0.0, 0.0, 0.0);
         for (node, kind) in fields.nodes.iter().enumerate() {
             let displaced = pressure.iter().enumerate().map(|(other, p)| {
                 problem.coefficient(node, other).map_or(f64::NAN, |coefficient| coefficient * p)
             });
-            let gap = problem.initial_gap()[node] + displaced.sum::<f64>() - approach;
-            self.tally.close("gap", fields.gap[node], gap, GAP * length)?;
-            let allowed = GAP * greatest + law.slope() * GAP * length;
+            let displaced: f64 = displaced.sum();
+            let gap = problem.initial_gap()[node] + displaced - approach;
+            gaps += gap;
+            elastic += 0.5 * pressure[node] * displaced;
+            adhesive += law.energy(gap.max(0.0));
+            self.tally.close("gap", fields.gap[node], gap, self.slack * length)?;
+            let allowed = self.slack * greatest + law.slope() * self.slack * length;
             match kind {
                 NodeState::Contact => {
-                    self.tally.close("gap in contact", gap, 0.0, GAP * length)?;
+                    self.tally.close("gap in contact", gap, 0.0, self.slack * length)?;
                     self.tally.not_negative("pressure", pressure[node] + law.stress(), allowed)?;
                 }
                 NodeState::Held => {
                     return Err(Violation::new(format!("node {node} is held outside of a jump")));
                 }
                 _ => {
-                    self.tally.not_negative("gap", gap, GAP * length)?;
+                    self.tally.not_negative("gap", gap, self.slack * length)?;
                     self.tally.close("pull", -pressure[node], law.pull(gap), allowed)?;
                 }
             }
         }
         let area = self.path.grid().cell_area();
-        let unit = area * greatest * pressure.len() as f64;
-        self.tally.close("load", state.contact.load, area * pressure.sum(), GAP * unit)
+        let (nodes, sum) = (pressure.len() as f64, pressure.sum());
+        let unit = area * greatest * nodes;
+        self.tally.close("load", state.contact.load, area * sum, self.slack * unit)?;
+        let count = |kind| fields.nodes.iter().filter(|node| **node == kind).count();
+        let expected = [NodeState::Soft, NodeState::Cohesive, NodeState::Contact].map(count);
+        let found = [state.soft_nodes, state.cohesive_nodes, state.contact.contact_nodes];
+        ensure!(
+            found == expected,
+            "{found:?} nodes are soft, cohesive and in contact: {expected:?}"
+        );
+        // Sums along the walk, which long cells let drift from what the present pressures say.
+        if self.sample.kernel.grid().cell_aspect() <= LONGEST {
+            // About the mean planes, as far as these have ever been displaced.
+            elastic -= 0.5 * self.gauge * sum * sum;
+            let reach = length + self.gauge.abs() * greatest * nodes;
+            let allowed = ENERGY * self.energy + self.slack * unit * reach;
+            self.tally.close(
+                "mean gap",
+                state.contact.mean_gap,
+                gaps / nodes,
+                self.slack * reach,
+            )?;
+            self.tally.close("elastic energy", state.contact.energy, area * elastic, allowed)?;
+            self.tally.close(
+                "energy of adhesion",
+                state.adhesive_energy,
+                area * adhesive,
+                allowed,
+            )?;
+            self.check_stiffnesses(&state.contact, &fields.nodes)?;
+        }
+        Ok(())
+    }
+
+    /// Stiffnesses by the rates of dense equations.
+    fn check_stiffnesses(
+        &mut self,
+        contact: &ContactState,
+        nodes: &DMatrix<NodeState>,
+    ) -> Result<(), Violation> {
+        let Some([(pressures, off), (gaps, gaps_off)]) = self.exact.rates(nodes) else {
+            return Ok(());
+        };
+        let (area, count) = (self.path.grid().cell_area(), nodes.len() as f64);
+        match contact.contact_stiffness {
+            Some(found) => {
+                let allowed = RATE * area * off;
+                self.tally.close("contact stiffness", found, area * pressures, allowed)?;
+            }
+            None => ensure!(self.gauge != 0.0, "there is no contact stiffness"),
+        }
+        let Some(found) = contact.interfacial_stiffness else {
+            return Err(Violation::new("there is no interfacial stiffness"));
+        };
+        if contact.contact_nodes == nodes.len() {
+            ensure!(
+                found == f64::INFINITY,
+                "in full contact the interfacial stiffness is {found:e}"
+            );
+            return Ok(());
+        }
+        // Times what closes, which may be next to nothing.
+        let closing = -gaps / count;
+        let allowed = RATE * (area * off + found.abs() * gaps_off / count);
+        self.tally.close("interfacial stiffness", found * closing, area * pressures, allowed)
     }
 
     /// Whether all equilibria can be tried. On the spectral half-space there need be no greatest.
@@ -282,7 +365,7 @@ impl Trial<'_> {
 
     /// Whether a state is the only equilibrium at its approach.
     fn is_alone(&self, fields: &AdhesiveFields) -> bool {
-        let allowed = GAP * self.length();
+        let allowed = self.slack * self.length();
         self.is_tried(fields)
             && self.beyond(fields).1.into_iter().all(|beyond| beyond.amax() <= allowed)
     }
@@ -294,7 +377,7 @@ impl Trial<'_> {
             Extreme::Least => -1.0,
             Extreme::Neither => return Ok(()),
         };
-        let allowed = GAP * self.length();
+        let allowed = self.slack * self.length();
         let (approach, all) = self.beyond(fields);
         for beyond in all {
             let most = (sign * beyond).max();

@@ -169,7 +169,8 @@ impl Seal {
     /// path : LoadingPath
     ///     With its states so far.
     /// states : int
-    ///     Number of states, at least 2.
+    ///     Number of states, at least 2; the first, the last that leaks and the one at which the last channel closes
+    ///     are always there.
     /// check : bool
     ///     As of `leak`.
     ///

@@ -344,7 +344,12 @@ def test_yielding_and_the_way_back(rough: asp.Surface, body: asp.HalfSpace) -> N
     path = asp.load_path(rough, body, area_fraction=0.2, hardness=2.5e9)
     history = path.run()
     columns = history.columns()
-    assert {"yielded_nodes", "plastic_volume", "plastic_work"} <= columns.keys()
+    assert {"yielded_nodes", "yielded_area_fraction", "plastic_volume", "plastic_work"} <= columns.keys()
+    for name, column in columns.items():
+        np.testing.assert_array_equal(column, getattr(history, name), err_msg=name)
+        if hasattr(history[-1], name):
+            np.testing.assert_array_equal(column[-1], getattr(history[-1], name), err_msg=name)
+    np.testing.assert_array_equal(columns["yielded_area_fraction"], columns["yielded_nodes"] / rough.z.size)
     assert history.has_hardness and (history.event == "yield").sum() == history.yielded_nodes[-1] > 100
     yielded, pressure, depth = path.yielded_map(), path.pressure(), path.plastic_depth()
     assert yielded.sum() == history.yielded_nodes[-1]

@@ -156,3 +156,21 @@ def test_a_record_of_python_goes_on_in_the_program(program: Callable[..., str], 
     np.testing.assert_array_equal(on.history.row, straight.row)
     np.testing.assert_allclose(on.history.load, straight.load, rtol=1e-9)
     program("patches", tmp_path / "path.npz", "--out", tmp_path / "patches")
+
+
+@pytest.mark.parametrize("options", [[], ["--hardness", "1GPa"]])
+def test_scalars_of_the_object(program: Callable[..., str], tmp_path: Path, options: list[str]) -> None:
+    """The scalars of `asperity path --json`, at its end and at a load on the way, are those of the record."""
+    record = tmp_path / "path.npz"
+    asked = ["path", "--nodes", "32", "--max-area-fraction", "0.2", "--at", "20N", "--json", *options]
+    told = json.loads(program(*asked, "--record", record, "--out", tmp_path))
+    opened = asp.open(record)
+    names = {name: name for name in told["at"][0].keys() & set(dir(opened.history[-1]))}
+    names |= {"contact_area_fraction": "area_fraction"}
+    assert len(names) == (14 if options else 11), sorted(names)
+    for numbers, state in [(told, opened.history[-1]), (told["at"][0], opened.history.at(load=20.0))]:
+        for there, here in names.items():
+            assert numbers[there] == getattr(state, here), here
+        corrected = opened.history.corrected_area if numbers is told else None
+        if corrected is not None and np.isfinite(corrected[-1]):
+            assert numbers["corrected_contact_area"] == corrected[-1]

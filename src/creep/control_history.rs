@@ -171,3 +171,47 @@ impl ViscoelasticBed<'_> {
         Ok(self.set_time(time))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: the first step is a quarter of the shortest time, 2 s, and each twice as long as the one before. Behind
+    /// a corner all begins anew.
+    #[test]
+    fn steps_grow_behind_each_corner() -> Result<(), Error> {
+        let body = Prony::relaxation(1.0, &[(2.0, 1.0), (30.0, 1.0)])?;
+        let load = PiecewiseLinear::step(1.0)?;
+        let steps = Steps { first: 0.25, growth: 2.0, least: 1 };
+        assert_eq!(steps.times(&body, &load, 10.0)?, [0.0, 0.5, 1.5, 3.5, 7.5, 10.0]);
+        // None is longer than a quarter of the whole.
+        let short = Steps { least: 4, ..steps };
+        assert_eq!(short.times(&body, &load, 10.0)?, [0.0, 0.5, 1.5, 3.5, 6.0, 8.5, 10.0]);
+        // At 3.5 s hardly a step would be left to the corner.
+        let load = load.hold(4.0)?.to(2.0, 4.0)?;
+        assert_eq!(steps.times(&body, &load, 8.0)?, [0.0, 0.5, 1.5, 4.0, 4.5, 5.5, 8.0]);
+        Ok(())
+    }
+
+    /// Half as long is twice as many: where steps grow, and where the least number of them counts, as on a body that
+    /// does not creep.
+    #[test]
+    fn halved_steps_are_twice_as_many() -> Result<(), Error> {
+        let load = PiecewiseLinear::step(1.0)?;
+        let (creeping, elastic) = (Prony::relaxation(1.0, &[(2.0, 1.0)])?, Prony::elastic(1.0)?);
+        let growing = Steps { least: 1, ..Steps::default() };
+        let [whole, half] = [growing, growing.halved()].map(|s| s.times(&creeping, &load, 1e6));
+        let (whole, half) = (whole?, half?);
+        // n steps from a on with the growth g come to a (gⁿ − 1)/(g − 1), which is 10⁶ s at n = 244.1; with a/2 and √g
+        // at 487.6. A last step that is hardly one is none.
+        assert_eq!([whole.len() - 1, half.len() - 1], [244, 488]);
+        assert_eq!((whole[1], half[1]), (0.04, 0.02));
+        for (steps, count) in [(Steps::default(), 60), (Steps::default().halved(), 120)] {
+            let times = steps.times(&elastic, &load, 1.0)?;
+            assert_eq!(times.len() - 1, count);
+            // Sums of so many.
+            assert!((times[1] * count as f64 - 1.0).abs() < 1e-14);
+        }
+        Ok(())
+    }
+}

@@ -137,7 +137,24 @@ impl<'a> Relaxation<'a> {
     /// When each knot of the path is reached \[s\], before contact recedes, if ever.
     #[must_use]
     pub fn times(&self) -> Vec<f64> {
-        self.growth.times(self.recession().unwrap_or(f64::INFINITY))
+        let until = self.recession().unwrap_or(f64::INFINITY);
+        let Some(touch) = self.first_touch().filter(|touch| *touch <= until) else {
+            return Vec::new();
+        };
+        // Apart, the surfaces are without load, as at first touch.
+        self.growth.times(until).into_iter().map(|time| time.max(touch)).collect()
+    }
+
+    /// When the approach reaches 0.
+    fn first_touch(&self) -> Option<f64> {
+        let corners = self.approach.corners();
+        let &(first, approach) = corners.first()?;
+        if approach >= 0.0 {
+            return Some(first);
+        }
+        let rises = corners.windows(2).find(|pair| pair[1].1 >= 0.0)?;
+        let [(from, below), (to, above)] = [rises[0], rises[1]];
+        Some(to - (to - from) * (above / (above - below)))
     }
 
     /// The pressure at a time: see [`Creep::pressure`](super::Creep::pressure).

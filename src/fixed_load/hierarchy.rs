@@ -149,6 +149,27 @@ fn solve_roughly(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::surface::Paraboloid;
+    use crate::{Boundary, Boussinesq, Grid};
+
+    /// A convolution on a grid of a quarter of the nodes is a quarter of one, and each counts once.
+    #[test]
+    fn convolutions_count_by_their_nodes() -> Result<(), Error> {
+        let grid = Grid::square(64, 1.0)?;
+        let problem = Problem::new(&Paraboloid::new(1.0)?, &Boussinesq::new(grid, 1.0)?)?;
+        let memory = MemoryBudget::new(usize::MAX, &grid, Boundary::Free, true)?;
+        let mut hierarchy = Hierarchy::new(&problem, true, memory)?;
+        assert_eq!(hierarchy.coarser.len(), 2);
+        for _ in 0..3 {
+            hierarchy.finest.refresh()?;
+        }
+        for level in [0, 1, 1] {
+            hierarchy.coarser[level].level.refresh()?;
+        }
+        assert_eq!(hierarchy.take_convolutions(), (3, 1.0 / 4.0 + 2.0 / 16.0));
+        assert_eq!(hierarchy.take_convolutions(), (0, 0.0));
+        Ok(())
+    }
 
     /// Whatever a solution on a coarser grid has come to, the start on the finer one has the sum.
     #[test]

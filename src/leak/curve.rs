@@ -59,7 +59,8 @@ impl Seal {
     /// logarithm of the leak rate, each over its range.
     ///
     /// `history` are the states of the path from first touch on. Each point takes the gap of one state and one
-    /// solution.
+    /// solution. The first state, the last that leaks and the one at which the last channel closes are always there:
+    /// three if only two `states` are asked for.
     ///
     /// # Errors
     ///

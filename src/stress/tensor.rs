@@ -261,6 +261,39 @@ mod tests {
         }
     }
 
+    /// Sum, sum of products and product of the principal stresses are the invariants of the tensor.
+    #[test]
+    fn principal_stresses_have_the_invariants_of_the_tensor() {
+        for values in [
+            [1.0, 2.0, -3.0, 0.5, -0.7, 1.1],
+            [-2.0, 0.3, 0.3, 0.0, 1.5, 0.0],
+            [0.1, -0.2, 0.4, 2.0, -1.0, 3.0],
+            [-5.0, -4.0, -1.0, 1e-3, 0.0, 1e-3],
+        ] {
+            let stress = Stress::new(values);
+            let [first, second, third] = stress.principal();
+            assert!(first >= second && second >= third, "{stress:?}");
+            let Stress { xx, yy, zz, yz, xz, xy } = stress;
+            let minors = xx * yy - xy * xy + yy * zz - yz * yz + zz * xx - xz * xz;
+            let product = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).determinant();
+            let found = [
+                first + second + third,
+                first * second + second * third + third * first,
+                first * second * third,
+            ];
+            let greatest: f64 = values.iter().map(|value| value.abs()).sum();
+            for ((found, expected), power) in
+                found.into_iter().zip([xx + yy + zz, minors, product]).zip(1..)
+            {
+                // Eigenvalues to a few roundings of the greatest, and each product of so many.
+                assert!(
+                    (found - expected).abs() < 1e-14 * greatest.powi(power),
+                    "{stress:?} {power}"
+                );
+            }
+        }
+    }
+
     /// What is left out is never greater, and few that are not are left in: states around simple ones, where two
     /// principal stresses are equal, and anywhere.
     #[test]

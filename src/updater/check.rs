@@ -334,6 +334,7 @@ mod tests {
             self.inner.watch(problem, contact, nodes, schur)?;
             match self.lie {
                 "matrix" => schur.matrix_mut()[(0, 0)] *= 1.0 + 1e-6,
+                "matrix, a little" => schur.matrix_mut()[(0, 0)] *= 1.0 + 1e-10,
                 "row sums" => schur.row_sums_mut()[0] *= 2.0,
                 "size" => schur.resize(nodes.len() + 1)?,
                 _ => {}
@@ -363,7 +364,11 @@ mod tests {
             self.inner.solve(problem, contact, count, approach, solution)?;
             match self.lie {
                 "pressure" if count > 0 => solution.pressure[0] = f64::NAN,
+                "pressure, a little" => {
+                    solution.pressure.iter_mut().for_each(|p| *p *= 1.0 + 1e-10)
+                }
                 "rate" => solution.rate.reverse(),
+                "rate, a little" => solution.rate.iter_mut().for_each(|y| *y *= 1.0 + 1e-10),
                 "length" => solution.rate.clear(),
                 _ => {}
             }
@@ -384,6 +389,27 @@ mod tests {
     fn what_an_updater_cannot_do_is_told() -> Result<(), Error> {
         let report = check(&mut Altered::complements(|_| {}), &problem()?)?;
         assert!(report.truncates && !report.releases, "{report:?}");
+        Ok(())
+    }
+
+    /// What is off by less than the tolerance is told: the first pivot without contact, which is C(0, 0), or all of a
+    /// solution.
+    #[test]
+    fn errors_are_told() -> Result<(), Error> {
+        let problem = problem()?;
+        for (lie, expected) in [
+            ("nothing", [0.0, 0.0]),
+            ("matrix, a little", [1e-10, 0.0]),
+            ("pressure, a little", [0.0, 1e-10]),
+            ("rate, a little", [0.0, 1e-10]),
+        ] {
+            let report = check(&mut Lying { inner: RecursiveCholesky::new(), lie }, &problem)?;
+            let found = [report.schur_error, report.solution_error];
+            // Rounding, of which matrices of so few nodes make a thousand times as much.
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-12, "{lie}: {report:?}");
+            }
+        }
         Ok(())
     }
 

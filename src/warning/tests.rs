@@ -321,12 +321,14 @@ fn a_single_patch_of_few_nodes_is_noticed() -> Result<(), Error> {
 fn laws_and_summits_that_the_grid_does_not_resolve_are_noticed() -> Result<(), Error> {
     use crate::adhesion::Adhesion;
     let (e_star, work) = (1e6, 0.05);
-    let grid = Grid::square(32, 1e-5)?;
+    let grid = Grid::new(32, 32, 3e-7, 2e-7)?;
     let half_space = Boussinesq::new(grid, e_star)?;
     let shortest = Adhesion::work(work).on(&half_space)?;
     // k C(0, 0) falls with the square of the range.
-    let steep = Adhesion::work(work).range(shortest.range() * (0.45_f64 / 0.6).sqrt());
-    let steep = steep.on(&half_space)?;
+    let asked = Adhesion::work(work).range(shortest.range() * (0.45_f64 / 0.6).sqrt());
+    let steep = asked.on(&half_space)?;
+    // To some roundings.
+    let same = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-12;
     // (9π w R² / 8E*)^⅓ = n dx
     let radius = |cells: f64| {
         let a = cells * grid.dx();
@@ -340,6 +342,18 @@ fn laws_and_summits_that_the_grid_does_not_resolve_are_noticed() -> Result<(), E
             let about = |is: fn(&Warning) -> bool| found.iter().any(is);
             assert_eq!(about(|w| matches!(w, Warning::SteepLaw { .. })), is_steep, "{found:?}");
             assert_eq!(about(|w| matches!(w, Warning::SmallSummits { .. })), is_small, "{found:?}");
+            for warning in found {
+                if let Warning::SteepLaw { resolution, cell, cell_needed } = warning {
+                    assert!(same(resolution, 0.6) && cell == grid.dx(), "{warning:?}");
+                    // The same law on such cells is at the limit.
+                    let [dx, dy] = [grid.dx(), grid.dy()].map(|side| side * cell_needed / cell);
+                    let fine = Boussinesq::new(Grid::new(32, 32, dx, dy)?, e_star)?;
+                    assert!(same(asked.on(&fine)?.resolution(), 0.5), "{warning:?}");
+                }
+                if let Warning::SmallSummits { cells: told, radius: of_summit } = warning {
+                    assert!(same(told, cells) && same(of_summit, radius(cells)), "{warning:?}");
+                }
+            }
         }
     }
     Ok(())

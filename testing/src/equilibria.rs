@@ -1,7 +1,7 @@
 //! All equilibria of a few nodes that stick, found by trying every state of every node.
 
 use asperity::Problem;
-use asperity::adhesion::{AdhesiveFields, CohesiveLaw};
+use asperity::adhesion::{AdhesiveFields, CohesiveLaw, NodeState};
 use nalgebra::{DMatrix, DVector};
 
 /// A surface of a few nodes that sticks: influence, initial gaps and law.
@@ -36,6 +36,36 @@ impl Equilibria {
         (&self.gap + &self.matrix * pressure)[0] - fields.gap[0]
     }
 
+    /// Influence between nodes that answer; soft ones give way along the slope of the law as well.
+    fn reduced(&self, free: &[usize], is_soft: impl Fn(usize) -> bool) -> DMatrix<f64> {
+        DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            let slope = if i == j && is_soft(free[i]) { 1.0 / self.law.slope() } else { 0.0 };
+            self.matrix[(free[i], free[j])] - slope
+        })
+    }
+
+    /// How the sums of all pressures and of all gaps change with the approach in the gauge of the kernel, while nodes
+    /// stay what they are; each with what it is off by for every unit of relative error of the equations. `None` if
+    /// these have no solution.
+    #[must_use]
+    pub fn rates(&self, nodes: &DMatrix<NodeState>) -> Option<[(f64, f64); 2]> {
+        let answers = |i: &usize| matches!(nodes[*i], NodeState::Soft | NodeState::Contact);
+        let free: Vec<usize> = (0..nodes.len()).filter(answers).collect();
+        let (count, greatest) = (nodes.len() as f64, self.matrix.amax());
+        // Of nodes that do not know of each other.
+        let alone = count / greatest;
+        if free.is_empty() {
+            return Some([(0.0, alone), (-count, count)]);
+        }
+        let reduced = self.reduced(&free, |i| nodes[i] == NodeState::Soft);
+        let inverse = reduced.clone().try_inverse()?;
+        let rates = inverse.column_sum();
+        let gaps = self.matrix.select_columns(&free) * &rates;
+        let condition = reduced.norm() * inverse.norm();
+        let off = condition * (inverse.norm() * free.len() as f64 + alone);
+        Some([(rates.sum(), off), (gaps.sum() - count, count * (1.0 + greatest * off))])
+    }
+
     /// Gaps of the state with nodes so, if that is a strict minimum of the energy.
     fn equilibrium(&self, nodes: &[usize], approach: f64) -> Option<DVector<f64>> {
         let law = &self.law;
@@ -44,10 +74,7 @@ impl Equilibria {
         let mut pressure =
             DVector::from_fn(size, |i, _| if nodes[i] == COHESIVE { -law.stress() } else { 0.0 });
         let base = &self.gap + &self.matrix * &pressure;
-        let shift = |i: usize| if nodes[i] == SOFT { 1.0 / law.slope() } else { 0.0 };
-        let reduced = DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            self.matrix[(free[i], free[j])] - if i == j { shift(free[i]) } else { 0.0 }
-        });
+        let reduced = self.reduced(&free, |i| nodes[i] == SOFT);
         let right = DVector::from_fn(free.len(), |i, _| {
             let range = if nodes[free[i]] == SOFT { law.range() } else { 0.0 };
             range + approach - base[free[i]]

@@ -79,10 +79,14 @@ fn branches_end_at_their_targets() {
 /// is none.
 #[test]
 fn stiffnesses_are_those_of_secants() {
-    let grid = Grid::square(20, 1.0).unwrap();
-    let periodic = PeriodicBoussinesq::new(grid, 1.0).unwrap();
+    let square = Grid::square(20, 1.0).unwrap();
+    let oblong = Grid::new(24, 16, 0.04, 0.06).unwrap();
+    let free = Boussinesq::new(oblong, 1.0).unwrap();
+    let periodic = [square, oblong].map(|grid| PeriodicBoussinesq::new(grid, 1.0).unwrap());
+    let spectral = Spectral::new(oblong, 1.0).unwrap();
     // Of a periodic half-space no distant point has a stiffness.
-    let kernels: [(&dyn InfluenceKernel, usize); 2] = [(&kernel(), 50), (&periodic, 0)];
+    let kernels: [(&dyn InfluenceKernel, usize); 5] =
+        [(&kernel(), 50), (&free, 50), (&periodic[0], 0), (&periodic[1], 0), (&spectral, 0)];
     let laws = [Adhesion::work(1e-3), Adhesion::maugis(1e-3, 0.02).range(0.08)];
     for ((kernel, least), law) in
         kernels.into_iter().flat_map(|kernel| laws.map(|law| (kernel, law)))
@@ -93,7 +97,7 @@ fn stiffnesses_are_those_of_secants() {
         path.unload().unwrap();
         branches.push(run(&mut path));
         let length = path.problem().greatest_gap() + path.law().range();
-        let pull = path.law().stress() * grid.nominal_area();
+        let pull = path.law().stress() * path.grid().nominal_area();
         for states in branches {
             let mut counts = [0; 2];
             for pair in states.windows(2) {

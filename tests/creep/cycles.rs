@@ -47,7 +47,41 @@ fn a_linear_contact_loses_what_its_compliance_says() {
         assert!(cycle.distance <= 1e-12, "{cycle:?}");
         let tangent = imaginary / real.hypot(imaginary);
         assert!((cycle.loss_factor / tangent - 1.0).abs() < 2e-4);
+        assert!((cycle.stiffness * amplitude / 2.0 - 1.0).abs() < 1e-4, "{period}");
+        // An ellipse about what the mean load settles to.
+        assert_eq!(cycle.path.len(), 401);
+        for (step, (approach, load)) in cycle.path.iter().enumerate() {
+            let (sine, cosine) = (std::f64::consts::TAU * step as f64 / 400.0).sin_cos();
+            assert!((load - (5.0 + 2.0 * sine)).abs() < 1e-13, "{period}, {step}");
+            let moves = 2.0 * (real * sine - imaginary * cosine) / stiffness;
+            let error = approach - (5.0 * (1.0 + j) / stiffness + moves);
+            assert!(error.abs() < 1e-4 * amplitude, "{period}, {step}: {error:e}");
+        }
     }
+}
+
+/// A body that does not creep goes up and down the path of its modulus, and loses nothing.
+#[test]
+fn elastic_cycles_are_the_path() {
+    let grid = Grid::square(10, 1.0).unwrap();
+    let half_space = Boussinesq::new(grid, 1.0).unwrap();
+    let path = LoadingSolver::builder(&rough(&grid, 1), &half_space).build().unwrap();
+    let history: History = path.collect::<Result<_, _>>().unwrap();
+    let bed = Bed::new(&history).unwrap();
+    // Half of the modulus of the path: as much approach as of twice the load.
+    let of_path = |load: f64| bed.at_load(2.0 * load).unwrap().approach;
+    let (mean, amplitude) = (0.1 * bed.last_load(), 0.05 * bed.last_load());
+    let mut contact = ViscoelasticBed::new(&bed, &Prony::elastic(0.5).unwrap()).unwrap();
+    let cycle = contact.cycle(mean, amplitude, 3.0, CycleSettings::default()).unwrap();
+    for &(approach, load) in &cycle.path {
+        // A sum over a hundred elements.
+        assert!((approach / of_path(load) - 1.0).abs() < 1e-12, "{load}");
+    }
+    let half = 0.5 * (of_path(mean + amplitude) - of_path(mean - amplitude));
+    assert!((cycle.approach_amplitude / half - 1.0).abs() < 1e-11);
+    assert!((cycle.stiffness * half / amplitude - 1.0).abs() < 1e-11);
+    // Twice the same chords, 96 of them.
+    assert!(cycle.dissipation.abs() < 1e-11 * amplitude * half, "{:e}", cycle.dissipation);
 }
 
 proptest! {

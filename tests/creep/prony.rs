@@ -54,6 +54,41 @@ fn bodies_in_closed_form() {
     assert!((half.creep_at(0.3) / solid.creep_at(0.3) / 2.0 - 1.0).abs() < 1e-15);
 }
 
+/// Fluids: a Maxwell body over a modulus, of a Poisson's ratio, and on bodies of each kind.
+#[test]
+fn fluids_in_closed_form() {
+    let maxwell = Prony::creep(0.25, &[], 0.5).unwrap();
+    let other = Prony::relaxation(0.0, &[(2.0, 3.0)]).unwrap();
+    for (fluid, instantaneous, fluidity) in [
+        (maxwell.relative_to(2.0), 0.5, 1.0),
+        (maxwell.plane_strain(0.5), 0.1875, 0.375),
+        (maxwell.in_series(&Prony::elastic(4.0).unwrap()), 0.5, 0.5),
+        (maxwell.in_series(&other), 0.25 + 1.0 / 3.0, 0.5 + 1.0 / 6.0),
+    ] {
+        let fluid = fluid.unwrap();
+        assert_eq!((fluid.equilibrium_modulus(), fluid.creep_terms().len()), (0.0, 0));
+        assert!((fluid.fluidity() / fluidity - 1.0).abs() < 1e-15, "{fluid:?}");
+        // J = j₀ + φ t, R = e^(−φ t/j₀)/j₀.
+        for t in [0.0, 0.1, 1.0, 3.0] {
+            let relaxation = (-fluidity * t / instantaneous).exp() / instantaneous;
+            assert!((fluid.creep_at(t) / (instantaneous + fluidity * t) - 1.0).abs() < 1e-14);
+            // Rounding of an exponent up to 6.
+            assert!((fluid.relaxation_at(t) / relaxation - 1.0).abs() < 1e-13, "{fluid:?} {t}");
+        }
+    }
+    // On a solid all flows, whichever is on top.
+    let solid = Prony::relaxation(2.0, &[(0.7, 3.0)]).unwrap();
+    for two in [maxwell.in_series(&solid).unwrap(), solid.in_series(&maxwell).unwrap()] {
+        assert_eq!((two.equilibrium_modulus(), two.fluidity()), (0.0, 0.5));
+        for t in [0.0, 0.1, 1.0, 30.0] {
+            let sum = maxwell.creep_at(t) + solid.creep_at(t);
+            assert!((two.creep_at(t) / sum - 1.0).abs() < 1e-14);
+            // Well-conditioned roots, and a sum of some terms of one sign.
+            assert!((convolved(&two, t) - 1.0).abs() < 1e-12, "{t}");
+        }
+    }
+}
+
 #[test]
 fn shares_are_parts_of_the_modulus() {
     let body = Prony::shares(&[(10.0, 0.2), (0.1, 0.3)]).unwrap();

@@ -19,16 +19,19 @@ const WORK: f64 = 1000.0;
 const END: f64 = 0.5;
 
 fn path() -> AdhesivePath {
+    path_of(Adhesion::work(WORK))
+}
+
+fn path_of(law: Adhesion) -> AdhesivePath {
     let grid = Grid::square(16, 3.2e-4).unwrap();
     let (surface, half_space) =
         (self_affine(&grid, 0.8, 1.5e-6, 3), Boussinesq::new(grid, E_STAR).unwrap());
-    let builder = AdhesivePath::builder(&surface, &half_space, Adhesion::work(WORK));
+    let builder = AdhesivePath::builder(&surface, &half_space, law);
     builder.until(ContactTarget::AreaFraction(END)).build().unwrap()
 }
 
 /// States of both branches.
-fn pulled_off() -> (AdhesivePath, AdhesiveBranch) {
-    let mut path = path();
+fn pulled_off(mut path: AdhesivePath) -> (AdhesivePath, AdhesiveBranch) {
     let mut states = path.run().unwrap();
     path.unload().unwrap();
     states.extend(path.run().unwrap().states().iter().copied());
@@ -48,7 +51,7 @@ pub(super) fn column(name: &str) -> Result<(), Error> {
 
 /// Pressures and gaps are those of the influence matrix and of the law, and scalars follow from them.
 fn fields() -> Result<(), Error> {
-    let (path, states) = pulled_off();
+    let (path, states) = pulled_off(path());
     let law = path.law();
     let grid = path.grid();
     let half_space = Boussinesq::new(grid, E_STAR)?;
@@ -101,28 +104,35 @@ fn through_a_file(record: &AdhesiveRecord, name: &str) -> AdhesiveRecord {
 
 /// Both branches come back bit for bit, and so do the fields of their states.
 fn record() -> Result<(), Error> {
-    let (path, states) = pulled_off();
-    let record = through_a_file(&AdhesiveRecord::new(&path, states.clone())?, "record");
-    assert_eq!(record.states(), &states);
-    assert_eq!(record.adhesion(), path.adhesion());
-    let again = record.path()?;
-    for state in states.states().iter().step_by(states.states().len() / 5) {
-        assert_eq!(again.fields_at(state)?, path.fields_at(state)?);
+    // Half the stress of the triangle, over a longer range: nodes are pulled with all of it before they touch.
+    let maugis = Adhesion::maugis(WORK, 0.5 * path().law().stress());
+    for law in [Adhesion::work(WORK), maugis] {
+        let (path, states) = pulled_off(path_of(law));
+        let is_cohesive = states.states().iter().any(|state| state.cohesive_nodes > 0);
+        assert!(is_cohesive || law != maugis);
+        let record = through_a_file(&AdhesiveRecord::new(&path, states.clone())?, "record");
+        assert_eq!(record.states(), &states);
+        assert_eq!((record.adhesion(), path.adhesion()), (law, law));
+        let again = record.path()?;
+        assert_eq!((again.law(), again.state()), (path.law(), path.state()));
+        for state in states.states().iter().step_by(states.states().len() / 5) {
+            assert_eq!(again.fields_at(state)?, path.fields_at(state)?);
+        }
+        // On a kernel that is given, if it is that one, and within a budget.
+        let on = |e_star: f64, budget: Option<usize>| {
+            record.path_on(&Boussinesq::new(record.grid(), e_star)?, budget)
+        };
+        let given = on(E_STAR, Some(1 << 30))?;
+        assert_eq!(given.state(), path.state());
+        assert!(matches!(on(2.0 * E_STAR, None), Err(Error::WrongKernel { .. })));
+        assert!(matches!(on(E_STAR, Some(1000)), Err(Error::MemoryBudget { budget: 1000, .. })));
     }
-    // On a kernel that is given, if it is that one, and within a budget.
-    let on = |e_star: f64, budget: Option<usize>| {
-        record.path_on(&Boussinesq::new(record.grid(), e_star)?, budget)
-    };
-    let given = on(E_STAR, Some(1 << 30))?;
-    assert_eq!(given.state(), path.state());
-    assert!(matches!(on(2.0 * E_STAR, None), Err(Error::WrongKernel { .. })));
-    assert!(matches!(on(E_STAR, Some(1000)), Err(Error::MemoryBudget { budget: 1000, .. })));
     Ok(())
 }
 
 /// Interrupted on either branch, within a jump or not, a path goes on to the same events.
 fn resume() -> Result<(), Error> {
-    let (_, states) = pulled_off();
+    let (_, states) = pulled_off(path());
     let all = states.states();
     for stop in [1, all.len() / 5, all.len() / 2, 4 * all.len() / 5] {
         let mut path = path();

@@ -249,6 +249,9 @@ fn a_great_hardness_is_none() {
     let high = solve(Some(10.0 * elastic.fields.max_pressure()));
     assert_eq!(high.fields.contact_map, elastic.fields.contact_map);
     assert_eq!(high.contact.plastic.unwrap().yielded_nodes, 0);
+    // The greatest pressure is a tenth of it, to what is allowed of pressures below.
+    near(high.certificate.excess_pressure.unwrap(), -0.9, 1e-8, "excess");
+    assert_eq!(elastic.certificate.excess_pressure, None);
     for (found, expected) in high.fields.pressure.iter().zip(&elastic.fields.pressure) {
         near(*found, *expected, 1e-7 * elastic.fields.max_pressure(), "pressure");
     }

@@ -2,9 +2,13 @@
 
 use asperity::joint::{Carrier, Conduction};
 use asperity::kernel::Layering;
+use asperity::loading::History;
 use asperity::reference::contact_conductance;
 use asperity::surface::{HeightMap, Paraboloid};
-use asperity::{Boussinesq, ContactState, Error, Grid, InfluenceKernel, PeriodicBoussinesq};
+use asperity::{
+    Boussinesq, ContactEvent, ContactState, Error, Grid, InfluenceKernel, LoadingState,
+    PeriodicBoussinesq,
+};
 use nalgebra::DMatrix;
 
 use super::{history, rough};
@@ -69,7 +73,7 @@ fn what_conducts_nothing_is_refused() {
         assert!(matches!(one.with_gap(bad, 0.0), Err(Error::NotPositive { .. })));
         if bad != 0.0 {
             assert!(matches!(one.with_gap(1.0, bad), Err(Error::OutOfRange { .. })));
-            let none = asperity::loading::History::default();
+            let none = History::default();
             assert!(matches!(one.bounds(&none, bad), Err(Error::OutOfRange { .. })));
         }
     }
@@ -114,6 +118,42 @@ fn bounds_enclose_the_conductance_and_widen_with_the_roughness() {
             }
             before = bounds;
         }
+    }
+}
+
+/// On a path whose compression is 2 √W, by calculus. Under W = v² the chord from u² has the slope
+/// (2 (v − u) + s) / (v² − u²), which is least where (v − u)² = u s, and the one to w² has (2 (w − v) − s) / (w² − v²),
+/// greatest where (w − v)² = w s. At v = 2 and s = 1 these are 1, from u = 1, and 1/4, to w = 4. The gap is beside both.
+#[test]
+fn bounds_of_a_root_are_those_of_its_best_chords() {
+    let grid = Grid::new(4, 5, 1.0, 1.0).unwrap();
+    let conduction = Conduction::thermal(2.0, 0.5).unwrap().with_gap(0.1, 2.0).unwrap();
+    // The approach where that is of a distant point, else what the mean gap closes; where a row of images makes neither
+    // certain it counts twice.
+    for (body, has_stiffness, roughness) in [
+        (Layering::HalfSpace, true, 1.0),
+        (Layering::HalfSpace, false, 1.0),
+        (Layering::SemiPeriodicHalfSpace, true, 0.5),
+    ] {
+        let is_far = has_stiffness && body == Layering::HalfSpace;
+        let states = (0..=20).map(|load| {
+            let load = f64::from(load);
+            let depth = 2.0 * load.sqrt();
+            let (approach, mean_gap) =
+                if is_far { (depth, 8.0 - 0.5 * depth) } else { (3.0 * depth, 10.0 - depth) };
+            let mut contact = ContactState::new(&grid, 5, approach, load, mean_gap);
+            contact.contact_stiffness = has_stiffness.then_some(7.0);
+            contact.interfacial_stiffness = Some(7.0);
+            LoadingState::new(1, ContactEvent::Touch, (0, 0), contact)
+        });
+        let history: History = states.collect();
+        let bounds = conduction.bounds(&history.on(body), roughness).unwrap();
+        // By ρ E* = 1, and an open area of 15 m² with a gap of 6 m · 20/15 on average.
+        let gap = 0.1 * 15.0 / (8.0 + 2.0);
+        // Some roundings.
+        assert!((bounds[4].lower - (2.0 + gap)).abs() < 1e-14, "{body:?} {:?}", bounds[4]);
+        assert!((bounds[4].upper - (8.0 + gap)).abs() < 1e-14, "{body:?} {:?}", bounds[4]);
+        assert_eq!(bounds[20].upper, f64::INFINITY);
     }
 }
 

@@ -264,6 +264,34 @@ fn by_hand(points: &[(f64, f64)]) -> History {
     states.collect()
 }
 
+/// By hand: of 100 nodes 1 and 2 are in contact, and the mean gap is 1 m and 0.6 m. Over 0.99 and 0.98 of the area it
+/// is so much more.
+#[test]
+fn a_gap_conducts_beside_the_interface() {
+    let states = by_hand(&[(0.0, 0.0), (0.4, 3.0)]);
+    let with_stiffness = states.states().iter().map(|state| {
+        let mut contact = state.contact;
+        contact.interfacial_stiffness = Some(7.0);
+        LoadingState::new(state.step, state.event, state.node, contact)
+    });
+    let solid = Conduction::thermal(2.0, 0.5).unwrap();
+    let history: History = with_stiffness.collect();
+    let conductances = |conduction: Conduction| -> Vec<f64> {
+        let table = InterfaceTable::builder(&history).conduction(conduction).build().unwrap();
+        table.rows().iter().map(|row| row.conductance.unwrap()).collect()
+    };
+    let expected = [0.1 * 0.99 / (1.0 / 0.99 + 2.0), 0.1 * 0.98 / (0.6 / 0.98 + 2.0)];
+    let found = conductances(solid.with_gap(0.1, 2.0).unwrap());
+    assert_eq!(found.len(), 2);
+    for ((found, solid), gap) in found.into_iter().zip(conductances(solid)).zip(expected) {
+        // Of 1 m², to some roundings of the sum.
+        assert!(
+            (solid - 14.0).abs() < 1e-13 && (found - solid - gap).abs() < 1e-13,
+            "{found} {gap}"
+        );
+    }
+}
+
 /// Where the mean gap opens under a greater load the stiffness is negative. A state whose pressure the table has all
 /// the same is left out; else the table would be wrong there, and the error says where.
 #[test]

@@ -31,6 +31,7 @@ fn love_is_an_inverse_m_matrix_from_the_least_gauge_on() -> Result<(), Error> {
     for (nx, ny, dx, dy) in GRIDS {
         let kernel = PeriodicBoussinesq::new(Grid::new(nx, ny, dx, dy)?, 1.0)?;
         let least = kernel.least_gauge().unwrap_or(f64::NAN);
+        assert!((kernel.gauge() / least - 1.02).abs() < 1e-12, "{nx} x {ny}: {least}");
         let (off_diagonal, row_sum) = signs_of_inverse(&kernel)?;
         assert!(off_diagonal < 0.0, "{nx} x {ny}: {off_diagonal:e}");
         assert!(row_sum > 0.0, "{nx} x {ny}: {row_sum:e}");
@@ -110,6 +111,9 @@ fn spectral_symbol_is_the_formula() -> Result<(), Error> {
     {
         let kernel = Spectral::new(Grid::new(nx, ny, dx, dy)?, 2.5)?;
         assert_eq!(kernel.e_star(), 2.5);
+        // 4/5 of the long side over E* and the number of nodes.
+        let gauge = 0.8 * (nx as f64 * dx).max(ny as f64 * dy) / (2.5 * (nx * ny) as f64);
+        assert!((kernel.gauge() / gauge - 1.0).abs() < 1e-14, "{nx} x {ny}: {}", kernel.gauge());
         // As numpy.fft.fftfreq: from 0 up, then the negative ones up to -1.
         let signed = |k: usize, n: usize| {
             if 2 * k < n { k as f64 } else { k as f64 - n as f64 }

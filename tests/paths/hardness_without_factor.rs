@@ -128,10 +128,12 @@ fn white(grid: &Grid) -> HeightMap {
     HeightMap::new(DMatrix::from_fn(nx, ny, |ix, iy| 5e-7 * height(ix, iy))).unwrap()
 }
 
-/// From first touch to the yield of the last node, from soft to hard; and no error of an approach beyond its estimate.
+/// From first touch to the yield of the last node, from soft to hard; and no error of an approach beyond its estimate,
+/// nor all of them far below.
 #[test]
 fn surfaces_have_the_events_of_the_factor() {
     let grid = Grid::square(36, 1.0).unwrap();
+    let mut most: f64 = 0.0;
     for (name, kernel) in half_spaces(grid) {
         for (surface, kind) in
             [(self_affine(&grid, 0.8, 5e-3, 1), "rough"), (white(&grid), "white")]
@@ -147,9 +149,12 @@ fn surfaces_have_the_events_of_the_factor() {
                 let worst = compare(&context, &found, &exact, &BETWEEN);
                 println!("{context}: {worst:.2} of the estimate");
                 assert!(worst <= 1.0, "{context}: {worst}");
+                most = most.max(worst);
             }
         }
     }
+    // On worse surfaces it is 0.64, for which `OF_SPACING_OF_BOTH` was chosen; here a third of that, or a quarter.
+    assert!(most > 0.1, "{most}");
 }
 
 /// Heights by the indices of a node, on cells of aspect 1 or 3.
@@ -531,10 +536,13 @@ fn the_default_hands_over_at_the_same_events() {
         }
         compare(&format!("budget {more}"), &found, &exact, &BETWEEN);
         println!("budget {more}: {at:?} behind {seam}");
-        let Some(elastic) = at else {
+        let Some(count) = at else {
             continue;
         };
-        seams.push(elastic);
+        // The state behind the seam was the first one computed without a factor: the one before it is where that ended.
+        let before = seam.checked_sub(2).map_or(0, |k| elastic(&found[k]));
+        assert_eq!(count, before, "budget {more}");
+        seams.push(count);
         // The window after which it was given up has been yielded by then.
         assert!(found[..seam.saturating_sub(1)].iter().all(|state| state.approach_error == 0.0));
         assert!(found[seam..].iter().any(|state| state.approach_error > 0.0));

@@ -137,6 +137,11 @@ fn records_make_their_kernel_again() {
         let (path, all) = whole(&*kernel, Handover::new());
         let history: History = all[..150].iter().copied().collect();
         let record = LoadingRecord::new(&path, history).unwrap();
+        // At 0, 1, half a side and the greatest offset of 18 × 15 nodes.
+        let offsets = [0, 1, 9, 17].into_iter();
+        let offsets = offsets.flat_map(|di| [0, 1, 7, 14].map(|dj| (di, dj)));
+        let expected: Vec<f64> = offsets.map(|(di, dj)| kernel.coefficient(di, dj)).collect();
+        assert_eq!(record.kernel().coefficients, expected);
         let mut resumed = record.resume().unwrap();
         resumed
             .continue_to(ContactTarget::Load(0.5 * (all[170].contact.load + all[171].contact.load)))

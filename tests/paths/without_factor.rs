@@ -109,11 +109,20 @@ pub(crate) fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel
     ]
 }
 
-/// Full contact from first touch, and the rate at which errors exceed their estimate.
+/// Estimated errors of approaches over the mean spacing of the forty events around.
+fn over_spacing(states: &[LoadingState]) -> impl Iterator<Item = f64> {
+    states.windows(41).map(|near| {
+        let span = near[40].contact.approach - near[0].contact.approach;
+        40.0 * near[20].approach_error / span
+    })
+}
+
+/// Full contact from first touch, the rate at which errors exceed their estimate, and how great estimates are.
 #[test]
 fn rough_surfaces_have_the_events_of_the_factor() {
     let mut events = 0;
     let mut exceeded = 0;
+    let mut estimates = Vec::new();
     for (shape, hurst, seed) in [((32, 32), 0.8, 1), ((32, 20), 0.3, 2), ((24, 36), 0.9, 3)] {
         let grid = Grid::new(shape.0, shape.1, 1.0 / 32.0, 1.0 / 32.0).unwrap();
         let surface = self_affine(&grid, hurst, 5e-3, seed);
@@ -122,11 +131,18 @@ fn rough_surfaces_have_the_events_of_the_factor() {
             let found = states(&surface, &kernel, ConjugateGradient::new(), None);
             exceeded += compare(name, &found, &exact, &BETWEEN);
             events += exact.len();
+            estimates.extend(over_spacing(&found));
         }
     }
     println!("{exceeded} of {events} errors exceed their estimate");
     // On 128² it was 4 in 245 760; a grid as small as these has a path of a few windows.
     assert!(200 * exceeded <= events, "{exceeded} of {events}");
+    estimates.sort_by(f64::total_cmp);
+    let median = estimates[estimates.len() / 2];
+    println!("half of the estimates are below {median:.2e} of the spacing of events");
+    // Two thousandths of it are the least, and windows have so few events that what local solutions leave out makes
+    // 1.6 · 0.2 s (1 − s) of it at the part s, 0.05 on average.
+    assert!(median < 0.1, "{median}");
 }
 
 #[test]

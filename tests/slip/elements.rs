@@ -3,11 +3,12 @@
 
 use asperity::bed::{Bed, BedState};
 use asperity::slip::{Friction, PartialSlip, SlipHistory};
-use asperity::{Boussinesq, Grid, InfluenceKernel, PeriodicBoussinesq};
+use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq};
 use asperity_testing::close::relative;
+use asperity_testing::surfaces::rough;
 use proptest::prelude::*;
 
-use crate::joints::rough_path;
+use crate::joints::{read, rough_path};
 
 /// A spring in a gap with a slider: normal force k_n (δ − gap), tangential one at most μ times that.
 struct Element {
@@ -252,6 +253,39 @@ fn elements_add_up_to_the_joint() {
             let rounding = 1e-14 * cycle.amplitude * joint.sliding_displacement();
             let error = (lost - cycle.dissipation).abs();
             assert!(error < rounding, "{share}: {error:e} of {lost:e}");
+        }
+    }
+}
+
+/// In full contact of a periodic half-space the last node makes the joint rigid. The others bear what friction bears of
+/// the load of the path; what there is beyond it slips first, so that it loses 4 T U of its own limit T.
+#[test]
+fn full_contact_slips_rigidly_at_first() {
+    let [_, kernel] = kernels();
+    let surface = rough(&kernel.grid(), 3);
+    let (_, history) = read(LoadingSolver::builder(&surface, kernel.as_ref()));
+    let bed = Bed::new(&history).unwrap();
+    let (nodes, full) = (kernel.grid().nodes(), bed.last_load());
+    assert_eq!((bed.loads().len(), bed.is_full()), (nodes, true));
+    let (mu, ratio) = (0.2, 1.1);
+    for load in [full, 1.3 * full] {
+        let joint = PartialSlip::new(&bed, load, Friction::new(mu, ratio).unwrap()).unwrap();
+        let elements: Vec<_> = joint.jenkins_elements().collect();
+        assert_eq!(elements.len(), nodes - 1);
+        let sum: f64 = elements.iter().map(|element| element.stiffness).sum();
+        assert!(relative(sum, bed.stiffnesses()[nodes - 2] / ratio) < 1e-12);
+        let sum: f64 = elements.iter().map(|element| element.slip_force()).sum();
+        // Approaches are right to 1e-13, and the stiffnesses of the last nodes are hundreds of times the mean one.
+        assert!(relative(sum, mu * full) < 1e-10, "{sum} {full}");
+        for share in [0.1, 0.5, 0.9, 1.0] {
+            let cycle = joint.cycle(share * joint.sliding_load()).unwrap();
+            let lost = elements.iter().map(|element| element.dissipation(cycle.displacement));
+            let lost = lost.sum::<f64>() + 4.0 * mu * (load - full) * cycle.displacement;
+            let error = (lost - cycle.dissipation).abs();
+            let scale = joint.sliding_load() * joint.sliding_displacement();
+            assert!(error < 1e-10 * scale, "{share}: {error:e} of {lost:e}");
+            let is_rigid = share * load < load - full;
+            assert_eq!(cycle.secant_stiffness == f64::INFINITY, is_rigid, "{share}: {cycle:?}");
         }
     }
 }

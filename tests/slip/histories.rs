@@ -269,7 +269,7 @@ fn tangential_stiffnesses_are_secants() {
         let (_, history) = rough_path(body, 3, 0.7);
         let bed = Bed::new(&history).unwrap();
         let mut joint = SlipHistory::new(&bed, friction());
-        // On the first loading, back, with more load, and with less.
+        // On the first loading, back, with more load, with less, and with more of both.
         for (load, force, sign) in [
             (0.5, 0.6, 1.0),
             (0.5, 0.8, 1.0),
@@ -279,6 +279,7 @@ fn tangential_stiffnesses_are_secants() {
             (0.8, -0.5, -1.0),
             (0.6, -0.5, -1.0),
             (0.6, 0.2, 1.0),
+            (0.7, 0.8, 1.0),
         ] {
             let (load, limit) = (load * bed.last_load(), 0.5 * MU * bed.last_load());
             let state = joint.to(load, force * limit).unwrap();

@@ -35,7 +35,7 @@ function unitFor(unit, greatest, nominal) {
     return { name: area, factor: FACTORS[area] / nominal };
   }
   // A prefix would be raised to the power of its metre.
-  if (unit === "" || unit === "m²" || unit === "m³" || unit === "m³/s") return { name: unit, factor: 1 };
+  if (unit === "" || unit === "m²" || unit === "m³" || unit.startsWith("m³/")) return { name: unit, factor: 1 };
   return prefixed(unit, greatest);
 }
 

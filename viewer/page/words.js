@@ -77,7 +77,7 @@ const COLUMN_UNITS = [
   [/load$|^amplitude$/, "N"],
   [/stiffness/, "N/m"],
   [/leak_rate/, "m³/s"],
-  [/permeability/, "m³"],
+  [/permeability/, "m³/(Pa s)"],
   [/_area$|^contact_area$/, "m²"],
   [/^time$|period/, "s"],
   [/frequency/, "Hz"],
@@ -89,7 +89,7 @@ const unitOfColumn = (name) => COLUMN_UNITS.find(([pattern]) => pattern.test(nam
 /** What another command has computed of the record: its charts. */
 function panel(found) {
   const columns = found.columns.map(({ name, values }) => ({ name, values: values.map((value) => value ?? NaN) }));
-  const along = columns.find(({ name }) => name === found.along) ?? columns[0];
+  const along = columns.find(({ name }) => name === found.along);
   const section = make("section", { class: "panel" }, make("h2", {}, found.title), make("p", { class: "note" }, `${found.lines} lines of ${found.file}, beside the record`));
   const charts = found.charts
     .map((name) => columns.find((column) => column.name === name))

@@ -126,6 +126,12 @@ pub(crate) fn of(folder: &Path, record: Option<SystemTime>) -> Beside {
 fn table(text: &str, kind: &Kind) -> Result<(Vec<Value>, usize), String> {
     let mut lines = text.lines().filter(|line| !line.trim().is_empty());
     let names: Vec<&str> = lines.next().ok_or("it is empty")?.split(',').map(str::trim).collect();
+    if !names.contains(&kind.along) {
+        return Err(format!("it has no column {}", kind.along));
+    }
+    if !kind.charts.iter().any(|chart| names.contains(chart)) {
+        return Err(format!("it has no column {}", kind.charts.join(" or ")));
+    }
     let rows: Vec<&str> = lines.collect();
     let every = rows.len().div_ceil(LINES).max(1);
     let mut columns: Vec<Vec<Option<f64>>> = vec![Vec::new(); names.len()];

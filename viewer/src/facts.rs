@@ -101,6 +101,10 @@ fn layers(body: &LayeredBody) -> Vec<Value> {
             facts.push(fact("base: Poisson's ratio", poisson, ""));
         }
     }
+    facts.push(match body.counterpart() {
+        None => fact("other body", "rigid", ""),
+        Some(e_star) => fact("other body: E/(1 − ν²)", e_star, "Pa"),
+    });
     facts
 }
 

@@ -312,6 +312,8 @@ fn tables_beside_the_record_are_shown() -> Result<(), Box<dyn std::error::Error>
     write("leak.csv", "load,leak_rate,imbalance\n1,2e-3,0\n2,1e-3,0\n3,,0\n", 50)?;
     write("creep.csv", "time,load\n0,1\n", 200)?;
     write("slip.csv", "displacement,tangential_load\n1\n", 10)?;
+    // Of the loads of a joint, and not of what it does.
+    write("history.csv", "time,load\n0,0\n1,1\n", 10)?;
     write("settings.json", r#"{"surface": {"file": "a.npy"}, "e_star": 1.5}"#, 300)?;
     let record = record_of(16, 0.1, None, false)?;
     let shown = |source: &dyn Fn(Source<'_>) -> Source<'_>| -> Result<(Value, Vec<String>), Error> {
@@ -344,7 +346,8 @@ fn tables_beside_the_record_are_shown() -> Result<(), Box<dyn std::error::Error>
         notes,
         [
             "slip.csv is left out: line 2 has 1 columns and not 2",
-            "creep.csv is left out: it is older than the record"
+            "creep.csv is left out: it is older than the record",
+            "history.csv is left out: it has no column displacement"
         ]
     );
     let (all, _) = shown(&|source| source.with_folder(Path::new(&folder.0)))?;

@@ -98,6 +98,9 @@ impl Heights {
             Found::Part(measured) if measured.cell.is_none() => {
                 Err(Fault::new("how large is the surface? Give its side along x"))
             }
+            Found::Part(MeasuredSurface { missing: 1, .. }) => {
+                Err(Fault::new("1 node is missing: let it be filled"))
+            }
             Found::Part(measured) => Err(Fault::new(format!(
                 "{} nodes are missing: let them be filled",
                 measured.missing
@@ -226,9 +229,7 @@ mod tests {
         assert_eq!([sizeless.picture()[1], sizeless.picture()[11]], [1, 255]);
         reading.side = Some(4e-3);
         let holed = read(&reading)?;
-        assert!(
-            holed.surface().is_err_and(|fault| fault.message.starts_with("1 nodes are missing"))
-        );
+        assert!(holed.surface().is_err_and(|fault| fault.message.starts_with("1 node is missing")));
         reading.fill = true;
         let whole = read(&reading)?;
         let surface = whole.surface()?;

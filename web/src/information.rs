@@ -59,8 +59,8 @@ fn of_surface(surface: &Topography) -> Vec<Value> {
         fact("rms height Sq", json!(map.rms_height()), "m"),
         fact("mean absolute height Sa", json!(map.mean_absolute_height()), "m"),
         fact("peak to valley Sz", json!(map.peak_to_valley()), "m"),
-        fact("skewness Ssk", json!(map.skewness()), ""),
-        fact("kurtosis Sku", json!(map.kurtosis()), ""),
+        fact("skewness Ssk, with the tilt", json!(map.skewness()), ""),
+        fact("kurtosis Sku, with the tilt", json!(map.kurtosis()), ""),
         fact("slope of the mean plane along x", json!(sx), ""),
         fact("the same along y", json!(sy), ""),
     ];

@@ -33,7 +33,7 @@ pub(crate) struct Options {
     #[arg(value_name = "DIR")]
     directory: PathBuf,
 
-    /// Number of loads, evenly spaced on a logarithmic axis
+    /// Number of loads, at least 2, evenly spaced on a logarithmic axis
     #[arg(long, value_name = "N", default_value_t = 60)]
     loads: usize,
 
@@ -52,6 +52,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
     }
+    if options.loads < 2 {
+        return Err(Failure::request("--loads takes at least 2: the first and the last in common"));
+    }
     let files = paths(&options.directory)?;
     check_alike(&files)?;
     let tables = files.iter().map(|file| Table::read(file));
@@ -62,7 +65,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             options.directory.display()
         )));
     };
-    let steps = options.loads.max(2) - 1;
+    let steps = options.loads - 1;
     let ratio = (last / first).powf(1.0 / steps as f64);
     let loads = (0..=steps).map(|k| (first * ratio.powi(k as i32)).min(last));
     let rows: Vec<Row> = loads.map(|load| Row::at(load, &tables)).collect();

@@ -227,7 +227,8 @@ fn print(
 
 /// The texture of a map whose size is known.
 fn texture(whole: &Whole) -> Result<Option<ArealParameters>, Failure> {
-    let is_map = whole.surface.grid().ny() > 1 && whole.has_size;
+    let (nx, ny) = whole.surface.grid().shape();
+    let is_map = nx > 1 && ny > 1 && whole.has_size;
     let found = is_map.then(|| whole.surface.areal_parameters()).transpose();
     found.map_err(|error| Failure::new("cannot compute the texture of the map", error))
 }
@@ -251,9 +252,10 @@ fn print_texture(texture: &ArealParameters) {
     );
 }
 
-/// The parameters of a profile: of a surface of one row whose length is known.
+/// The parameters of a profile: of a surface of one row or column whose length is known.
 fn profile(whole: &Whole, cutoff: Option<f64>) -> Result<Option<ProfileParameters>, Failure> {
-    let is_profile = whole.surface.grid().ny() == 1 && whole.has_size;
+    let (nx, ny) = whole.surface.grid().shape();
+    let is_profile = (nx == 1 || ny == 1) && whole.has_size;
     if !is_profile {
         return match cutoff {
             None => Ok(None),
@@ -262,7 +264,8 @@ fn profile(whole: &Whole, cutoff: Option<f64>) -> Result<Option<ProfileParameter
             )),
         };
     }
-    let found = whole.surface.profile_parameters(cutoff);
+    let along_x = if ny == 1 { whole.surface.clone() } else { whole.surface.transpose() };
+    let found = along_x.profile_parameters(cutoff);
     found
         .map(Some)
         .map_err(|error| Failure::new("cannot compute the roughness of the profile", error))

@@ -47,7 +47,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive())]
     load: Vec<f64>,
 
-    /// Number of states at which the leak rate along the path is computed; 0 for none but those of --load
+    /// Number of states at which the leak rate along the path is computed, among them the first, the last that leaks and
+    /// the one at which the last channel closes; 0 for none but those of --load
     #[arg(long, value_name = "N", default_value_t = 40)]
     states: usize,
 

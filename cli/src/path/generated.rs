@@ -2,7 +2,7 @@
 
 use asperity::surface::{Amplitude, SelfAffine, Topography};
 use asperity::{Grid, LoadingSolver, SurfaceError};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{plain, quantity};
 use asperity_cli::outcome::Failure;
 use serde_json::{Value, json};
 
@@ -94,7 +94,7 @@ impl Generated {
             if self.is_example { " as an example" } else { "" },
             spectrum.hurst(),
             quantity(shortest, "m", 4),
-            quantity(cells, "cells", 4),
+            plain(cells, 4) + " cells",
             quantity(spectrum.rolloff_wavelength(), "m", 4),
             spectrum.seed()
         ))

@@ -206,6 +206,7 @@ impl Options {
                     file.display()
                 )));
             }
+            check_input(file, &self.out, &["path.csv"])?;
             check_input(file, &self.out, left)?;
             check_input(file, &self.out, fields)?;
         }

@@ -463,13 +463,13 @@ impl Surface {
         Ok(self.topography()?.map().peak_to_valley())
     }
 
-    /// Skewness Ssk of the heights.
+    /// Skewness Ssk of the heights as they are; `areal_parameters` takes off their tilt.
     #[getter]
     fn ssk(&self) -> Fallible<f64> {
         Ok(self.topography()?.map().skewness())
     }
 
-    /// Kurtosis Sku of the heights, 3 for a normal distribution.
+    /// Kurtosis Sku of the heights as they are, 3 for a normal distribution; `areal_parameters` takes off their tilt.
     #[getter]
     fn sku(&self) -> Fallible<f64> {
         Ok(self.topography()?.map().kurtosis())

@@ -265,6 +265,34 @@ fn layers_of_the_base_are_the_half_space() -> Result<(), Error> {
     Ok(())
 }
 
+/// The other body adds what it answers alone, near and far: of a thin layer on a rigid base nothing else is left there.
+#[test]
+fn the_other_body_is_added() -> Result<(), Error> {
+    for (nx, ny) in [(12, 9), (96, 3)] {
+        let grid = Grid::new(nx, ny, 1.0, 1.5)?;
+        let other = Boussinesq::new(grid, 2.0)?;
+        for (place, body) in bodies(0.05)?[..5].iter().enumerate() {
+            let alone = Layered::free(grid, body.clone())?;
+            let pair = body.clone().against(2.0)?;
+            let love = Boussinesq::new(grid, pair.surface_modulus())?;
+            let pair = Layered::free(grid, pair)?;
+            let (nx, ny) = (nx as isize, ny as isize);
+            for (di, dj) in (0..nx).flat_map(|di| (0..ny).map(move |dj| (di, dj))) {
+                let found = pair.coefficient(di, dj);
+                let expected = alone.coefficient(di, dj) + other.coefficient(di, dj);
+                // Three of Love's coefficients, right to 5e-16, and as many sums.
+                let allowed = 4e-15 * (love.coefficient(di, dj) + found.abs());
+                let error = (found - expected).abs();
+                assert!(error < allowed, "{nx} {place} ({di}, {dj}): {found} {expected} {error:e}");
+            }
+            // A layer on a rigid base is not felt 200 thicknesses away.
+            let end = alone.coefficient(nx - 1, ny - 1);
+            assert_eq!(end == 0.0, matches!(body.base(), Base::Rigid), "{nx} {place}: {end:e}");
+        }
+    }
+    Ok(())
+}
+
 /// Waves answer with the compliance.
 #[test]
 fn the_spectral_kernel_is_made_of_the_compliance() -> Result<(), Error> {
@@ -367,30 +395,34 @@ fn free_layers_on_a_rigid_base_repeat_to_periodic_ones() -> Result<(), Error> {
 /// coefficients by less than rounding.
 #[test]
 fn free_coats_are_periodic_ones_of_long_periods() -> Result<(), Error> {
-    let n = 256_usize;
-    let large = Grid::square(n, n as f64)?;
-    let small = Grid::new(10, 8, 1.0, 1.0)?;
+    let n = 256;
     let e_star = 1.0 / (1.0 - 0.09);
-    let below = PeriodicBoussinesq::new(large, e_star)?.with_gauge(0.0)?;
-    let love = Boussinesq::new(small, e_star)?;
-    for h in [0.05, 0.8, 2.0] {
-        for body in &bodies(h)?[..3] {
-            let symbol = periodic::cells(&large, body, 0.0)?;
-            let periodic = symbol.inverse_transform();
-            let free = Layered::free(small, body.clone())?;
-            let scale = free.coefficient(0, 0);
-            let difference = |di: isize, dj: isize| {
-                let far = periodic.at(di, dj) - below.coefficient(di, dj);
-                let near = free.coefficient(di, dj) - love.coefficient(di, dj);
-                far - near
-            };
-            let first = difference(0, 0);
-            for (di, dj) in (0..10).flat_map(|di| (0..8).map(move |dj| (di, dj))) {
-                let error = (difference(di, dj) - first).abs() / scale;
-                // Images change the sum of the second differences of r⁻³ by some 45 d² / 256⁵, and the coefficient of
-                // r⁻³ is h² / (2π E) at most ten times over.
-                let images = 4e-10 * h * h * (di * di + dj * dj) as f64;
-                assert!(error < 1e-12 + images, "{h} {body:?} ({di}, {dj}): {error:e}");
+    for (dy, thicknesses) in [(1.0, &[0.05, 0.8, 2.0][..]), (1.5, &[0.8][..])] {
+        let large = Grid::new(n, n, 1.0, dy)?;
+        let small = Grid::new(10, 8, 1.0, dy)?;
+        let below = PeriodicBoussinesq::new(large, e_star)?.with_gauge(0.0)?;
+        let love = Boussinesq::new(small, e_star)?;
+        for &h in thicknesses {
+            for body in &bodies(h)?[..3] {
+                let symbol = periodic::cells(&large, body, 0.0)?;
+                let periodic = symbol.inverse_transform();
+                let free = Layered::free(small, body.clone())?;
+                let scale = free.coefficient(0, 0);
+                let difference = |di: isize, dj: isize| {
+                    let far = periodic.at(di, dj) - below.coefficient(di, dj);
+                    let near = free.coefficient(di, dj) - love.coefficient(di, dj);
+                    far - near
+                };
+                let first = difference(0, 0);
+                for (di, dj) in (0..10).flat_map(|di| (0..8).map(move |dj| (di, dj))) {
+                    let error = (difference(di, dj) - first).abs() / scale;
+                    // Images change the sum of the second differences of r⁻³ by some 45 d² / 256⁵, and the coefficient
+                    // of r⁻³ is h² / (2π E) at most ten times over. Longer cells have fewer images.
+                    let square = (di * di) as f64 + dy * dy * (dj * dj) as f64;
+                    let images = 4e-10 * h * h * square;
+                    let context = format!("{dy} {h} {body:?} ({di}, {dj})");
+                    assert!(error < 1e-12 + images, "{context}: {error:e}");
+                }
             }
         }
     }

@@ -194,6 +194,12 @@ mod tests {
         // Heights in nm that are taken for µm.
         let found = warnings(1e-5, |x, y| 1e3 * rough(x, y))?;
         assert!(matches!(found[..], [Warning::Steep { .. }]), "{found:?}");
+        // Up or down by three cells from node to node.
+        let steep = warnings(1e-5, |x, _| 3e-5 * [0.0, 1.0, 0.0, -1.0][x as usize % 4])?;
+        assert!(
+            matches!(steep[0], Warning::Steep { rms_gradient } if (rms_gradient - 3.0).abs() < 1e-14),
+            "{steep:?}"
+        );
         assert!(found[0].to_string().contains("a thousand times smaller"));
         // No unit makes a surface of this one.
         let hopeless = Warning::Steep { rms_gradient: 1e10 }.to_string();
