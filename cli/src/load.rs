@@ -117,9 +117,7 @@ impl Options {
         outcome::check_input(&self.surface, &self.out, &["load.csv"])?;
         let Some(directory) = &self.save else { return Ok(()) };
         let fields = asked.iter().flat_map(|at| FIELDS.map(|name| field_file(name, *at)));
-        let fields: Vec<String> = fields.collect();
-        let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
-        outcome::check_input(&self.surface, directory, &fields)
+        outcome::check_input(&self.surface, directory, &fields.collect::<Vec<_>>())
     }
 }
 

@@ -149,7 +149,11 @@ pub fn is_same(one: &Path, other: &Path) -> bool {
 /// # Errors
 ///
 /// If it would be replaced.
-pub fn check_input(input: &Path, directory: &Path, names: &[&str]) -> Result<(), Failure> {
+pub fn check_input(
+    input: &Path,
+    directory: &Path,
+    names: &[impl AsRef<Path>],
+) -> Result<(), Failure> {
     match names.iter().map(|name| directory.join(name)).find(|file| is_same(file, input)) {
         None => Ok(()),
         Some(_) => Err(Failure::request(format!(

@@ -2,13 +2,12 @@
 
 mod common;
 
-use std::collections::HashMap;
 use std::error::Error;
 use std::fs;
 use std::time::{Duration, Instant};
 
 use asperity::io::write_npy;
-use common::{Scratch, is_refused, output, said};
+use common::{Scratch, is_refused, numbers, output, said};
 use nalgebra::DMatrix;
 
 type Done = Result<(), Box<dyn Error>>;
@@ -127,39 +126,29 @@ fn gathered_columns_are_those_of_the_paths() -> Done {
     let paths = "path --nodes 24 --max-area-fraction 0.2 --seeds 4..6 --out runs";
     assert!(output(&folder.0, paths)?.status.success());
     assert!(output(&folder.0, "gather runs --loads 7")?.status.success());
-    let columns = |file: &str| -> Result<HashMap<String, Vec<f64>>, Box<dyn Error>> {
-        let text = fs::read_to_string(folder.join(file))?;
-        let mut lines = text.lines();
-        let names: Vec<&str> = lines.next().ok_or("no header")?.split(',').collect();
-        let mut columns: HashMap<String, Vec<f64>> = HashMap::new();
-        for line in lines {
-            for (name, cell) in names.iter().zip(line.split(',')) {
-                // Events have names.
-                let value = cell.parse().unwrap_or(f64::NAN);
-                columns.entry((*name).to_string()).or_default().push(value);
-            }
-        }
-        Ok(columns)
-    };
-    let gathered = columns("runs/gather.csv")?;
+    let gathered = folder.join("runs/gather.csv");
     let mut runs: Vec<_> = fs::read_dir(folder.join("runs"))?.collect::<Result<_, _>>()?;
     runs.retain(|entry| entry.path().is_dir());
-    let runs = runs
-        .iter()
-        .map(|run| columns(&format!("runs/{}/path.csv", run.file_name().to_string_lossy())));
-    let runs: Vec<_> = runs.collect::<Result<_, _>>()?;
-    assert_eq!((runs.len(), gathered["load"].len(), gathered.len()), (3, 7, 13));
-    for (row, load) in gathered["load"].iter().enumerate() {
-        for (name, is_straight) in [
-            ("contact_area_fraction", false),
-            ("corrected_contact_area", false),
-            ("approach", true),
-            ("mean_gap", true),
-            ("contact_stiffness", false),
-            ("interfacial_stiffness", false),
-        ] {
-            let values = runs.iter().map(|run| {
-                let (loads, values) = (&run["load"], &run[name]);
+    let runs: Vec<_> = runs.iter().map(|run| run.path().join("path.csv")).collect();
+    let names = fs::read_to_string(&gathered)?;
+    let names = names.lines().next().map_or(0, |names| names.split(',').count());
+    let at = numbers(&gathered, "load")?;
+    assert_eq!((runs.len(), at.len(), names), (3, 7, 13));
+    let loads: Vec<_> = runs.iter().map(|run| numbers(run, "load")).collect::<Result<_, _>>()?;
+    for (name, is_straight) in [
+        ("contact_area_fraction", false),
+        ("corrected_contact_area", false),
+        ("approach", true),
+        ("mean_gap", true),
+        ("contact_stiffness", false),
+        ("interfacial_stiffness", false),
+    ] {
+        let columns: Vec<_> =
+            runs.iter().map(|run| numbers(run, name)).collect::<Result<_, _>>()?;
+        let [means, spreads] =
+            ["mean", "std"].map(|what| numbers(&gathered, &format!("{name}_{what}")));
+        for ((load, found_mean), found_spread) in at.iter().zip(means?).zip(spreads?) {
+            let values = loads.iter().zip(&columns).map(|(loads, values)| {
                 let last = loads.iter().rposition(|other| other <= load).unwrap_or(0);
                 match loads.get(last + 1).filter(|_| is_straight) {
                     None => values[last],
@@ -173,8 +162,6 @@ fn gathered_columns_are_those_of_the_paths() -> Done {
             let mean = (a + b + c) / 3.0;
             // Half the sum of squares, by differences of pairs.
             let spread = (((a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2)) / 6.0).sqrt();
-            let [found_mean, found_spread] =
-                ["mean", "std"].map(|what| gathered[&format!("{name}_{what}")][row]);
             assert!((found_mean / mean - 1.0).abs() < 1e-12, "{name} at {load}: {found_mean:e}");
             assert!((found_spread - spread).abs() < 1e-12 * mean.abs(), "{name} at {load}");
         }

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use common::{Scratch, is_refused, output, said};
+use common::{Scratch, column, is_refused, numbers, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -14,20 +14,6 @@ fn finished(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
     let done = output(folder, line)?;
     assert!(done.status.success(), "{line}: {}", said(&done));
     Ok(said(&done) + &String::from_utf8_lossy(&done.stdout))
-}
-
-/// The cells of a column of a file.
-fn column(file: &Path, name: &str) -> Result<Vec<String>, Box<dyn Error>> {
-    let text = fs::read_to_string(file)?;
-    let mut lines = text.lines();
-    let header = lines.next().ok_or("no header")?;
-    let place = header.split(',').position(|other| other == name);
-    let place = place.ok_or_else(|| format!("no column {name}"))?;
-    Ok(lines.map(|line| line.split(',').nth(place).unwrap_or_default().to_string()).collect())
-}
-
-fn numbers(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
-    Ok(column(file, name)?.iter().map(|cell| cell.parse()).collect::<Result<_, _>>()?)
 }
 
 /// A load under which all cells in contact have yielded, half of them: the state of the path, which ends where that

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Output;
 
 use asperity_cli::number::quantity;
-use common::{Scratch, asperity, said};
+use common::{Scratch, asperity, numbers, said};
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
@@ -39,16 +39,6 @@ fn object(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
 
 fn number(object: &Value, name: &str) -> f64 {
     object[name].as_f64().unwrap_or(f64::NAN)
-}
-
-/// A column of a table.
-fn column(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
-    let text = fs::read_to_string(file)?;
-    let mut lines = text.lines();
-    let mut names = lines.next().ok_or("no header")?.split(',');
-    let place = names.position(|other| other == name).ok_or_else(|| format!("no column {name}"))?;
-    let cells = lines.map(|line| line.split(',').nth(place).unwrap_or_default().parse());
-    Ok(cells.collect::<Result<_, _>>()?)
 }
 
 /// Its answers hang together, and with its tables; the history of a first loading and a cycle loses a quarter of a
@@ -83,17 +73,17 @@ fn answers_and_tables_agree() -> Done {
     assert!((lost / (1.25 * number(&default, "dissipation")) - 1.0).abs() < 1e-9, "{lost}");
 
     let seen = folder.join("seen");
-    let loads = column(&seen.join("slip.csv"), "tangential_load")?;
-    let displacements = column(&seen.join("slip.csv"), "displacement")?;
+    let loads = numbers(&seen.join("slip.csv"), "tangential_load")?;
+    let displacements = numbers(&seen.join("slip.csv"), "displacement")?;
     assert!((loads.last().ok_or("no rows")? / (0.5 * load) - 1.0).abs() < 1e-12);
     let last = displacements.last().ok_or("no rows")?;
     assert!((last / number(&default, "sliding_displacement") - 1.0).abs() < 1e-12);
     assert!(displacements.windows(2).all(|pair| pair[0] < pair[1]));
-    let losses = column(&seen.join("cycles.csv"), "dissipation")?;
+    let losses = numbers(&seen.join("cycles.csv"), "dissipation")?;
     assert!(losses.len() > 20 && losses.windows(2).all(|pair| pair[0] < pair[1]));
     // Elements bear all that friction does.
-    let stiffnesses = column(&seen.join("iwan.csv"), "stiffness")?;
-    let slips = column(&seen.join("iwan.csv"), "slip_displacement")?;
+    let stiffnesses = numbers(&seen.join("iwan.csv"), "stiffness")?;
+    let slips = numbers(&seen.join("iwan.csv"), "slip_displacement")?;
     let sum: f64 = stiffnesses.iter().zip(&slips).map(|(k, slip)| k * slip).sum();
     assert!((sum / number(&default, "sliding_load") - 1.0).abs() < 1e-10);
     assert!(slips.windows(2).all(|pair| pair[0] <= pair[1]));
@@ -101,7 +91,7 @@ fn answers_and_tables_agree() -> Done {
     let printed = run(folder, "slip path.npz --friction 0.5 --material rubber")?.stdout;
     let stiffness = quantity(stiffnesses.iter().sum(), "N/m", 4);
     assert!(String::from_utf8(printed)?.contains(&format!("before any slip {stiffness}\n")));
-    assert_eq!(column(&seen.join("history.csv"), "dissipation")?.last(), Some(&lost));
+    assert_eq!(numbers(&seen.join("history.csv"), "dissipation")?.last(), Some(&lost));
     for picture in ["slip", "stick_map", "wear_map", "history"] {
         let bytes = fs::read(seen.join(picture).with_extension("png"))?;
         assert!(bytes.starts_with(b"\x89PNG"), "{picture}");

@@ -6,12 +6,11 @@ mod common;
 use std::error::Error;
 use std::ffi::OsStr;
 use std::fs;
-use std::path::Path;
 use std::process::Output;
 
 use asperity::io::write_npy;
 use asperity::surface::Topography;
-use common::{Scratch, asperity, data, is_refused, output, run, said};
+use common::{Scratch, asperity, data, is_refused, numbers, output, run, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -26,17 +25,6 @@ fn with_surface(name: &str) -> std::io::Result<Scratch> {
     let folder = Scratch::new(name)?;
     fs::copy(data("selfaffine_48.npy"), folder.join("rough.npy"))?;
     Ok(folder)
-}
-
-/// The numbers of a column of a file.
-fn column(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
-    let text = fs::read_to_string(file)?;
-    let mut lines = text.lines();
-    let header = lines.next().ok_or("no header")?;
-    let place = header.split(',').position(|other| other == name);
-    let place = place.ok_or_else(|| format!("no column {name}"))?;
-    let cells = lines.map(|line| line.split(',').nth(place).unwrap_or_default());
-    Ok(cells.map(str::parse).collect::<Result<_, _>>()?)
 }
 
 #[test]
@@ -64,8 +52,8 @@ fn the_area_of_every_state_is_corrected() -> Done {
     assert!(words.contains("corrected") && words.contains("mesh: at the last state"), "{words}");
     run(&folder.0, "patches path.npz --out patches")?;
     let file = folder.join("out/path.csv");
-    let found = column(&file, "corrected_contact_area")?;
-    let shares = column(&folder.join("patches/patches.csv"), "corrected_area_fraction")?;
+    let found = numbers(&file, "corrected_contact_area")?;
+    let shares = numbers(&folder.join("patches/patches.csv"), "corrected_area_fraction")?;
     assert_eq!(found.len(), shares.len());
     for (area, share) in found.iter().zip(shares) {
         assert!((area / (1e-4 * share) - 1.0).abs() < 1e-12, "{area} {share}");
@@ -73,7 +61,7 @@ fn the_area_of_every_state_is_corrected() -> Done {
     let cell = 1e-4 / (32.0 * 32.0);
     let factor = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
     assert!((found[0] / (cell * (1.0 - 4.0 * factor)) - 1.0).abs() < 1e-12);
-    assert!(column(&file, "approach_error")?.iter().all(|error| *error >= 0.0));
+    assert!(numbers(&file, "approach_error")?.iter().all(|error| *error >= 0.0));
     Ok(())
 }
 
@@ -162,11 +150,11 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
     }
     assert!(words.contains("wrote out/load.csv"), "{words}");
     let file = folder.join("out/load.csv");
-    for (found, expected) in column(&file, "load")?.iter().zip([1e-7, 1e-3 * 1e-4, 2e-7]) {
+    for (found, expected) in numbers(&file, "load")?.iter().zip([1e-7, 1e-3 * 1e-4, 2e-7]) {
         assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
     }
-    let fractions = column(&file, "contact_area_fraction")?;
-    let areas = column(&file, "contact_area")?;
+    let fractions = numbers(&file, "contact_area_fraction")?;
+    let areas = numbers(&file, "contact_area")?;
     assert!((fractions[1] * 1e-4 / areas[1] - 1.0).abs() < 1e-12);
     assert!((fractions[3] - 0.2).abs() < 1e-3, "{}", fractions[3]);
     for name in ["100nN", "1mPa", "2mPa", "20%"] {
@@ -177,7 +165,7 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
         serde_json::from_str(&printed(&run(&folder.0, &format!("{line} --json"))?))?;
     let found = object["states"].as_array().ok_or("no states")?;
     for (place, state) in found.iter().enumerate() {
-        assert_eq!(state["load"].as_f64(), Some(column(&file, "load")?[place]));
+        assert_eq!(state["load"].as_f64(), Some(numbers(&file, "load")?[place]));
         assert!(state["contact_nodes"].is_u64() && state["seconds"].is_f64());
     }
     assert_eq!(found.len(), 4);
@@ -246,7 +234,7 @@ fn units_are_understood_and_chosen() -> Done {
     let line = format!("{path} units --mean-pressure 5MPa --fe-table csv");
     run(&folder.0, &line)?;
     let file = folder.join("units/interface.csv");
-    let (pressure, overclosure) = (column(&file, "pressure")?, column(&file, "overclosure")?);
+    let (pressure, overclosure) = (numbers(&file, "pressure")?, numbers(&file, "overclosure")?);
     let words = printed(&run(&folder.0, &format!("{line} --units mm-n-mpa"))?);
     let header: Vec<&str> = words
         .lines()
@@ -256,7 +244,7 @@ fn units_are_understood_and_chosen() -> Done {
         .unwrap_or_default();
     assert_eq!(header, ["N", "MPa", "MPa", "mm²", "%", "%", "mm", "mm", "N/mm", "N/mm"]);
     for (name, values, unit) in [("pressure", pressure, 1e-6), ("overclosure", overclosure, 1e3)] {
-        for (found, value) in column(&file, name)?.iter().zip(values) {
+        for (found, value) in numbers(&file, name)?.iter().zip(values) {
             assert!((found - unit * value).abs() <= 1e-12 * found, "{name}: {found} {value}");
         }
     }

@@ -24,6 +24,7 @@ use asperity_testing::dense::{influence_matrix, initial_gap};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::problem::Sample;
+use crate::verdict::{Tally, Violation, ensure};
 
 /// Rounding errors of a residual, as a multiple of the number of nodes and a constant that stands for those of the
 /// convolution and of the path.
@@ -491,21 +492,21 @@ impl<'a> ContactSet<'a> {
         self.norms.rate * self.closing_error
     }
 
-    /// What is lost where nodes have yielded, and the errors of it if those of gaps are so large.
-    pub(crate) fn plastic(&self, instant: &Instant, gap_error: f64) -> [Plastic; 2] {
-        let [mut sums, mut errors] = [[0.0; 2]; 2];
+    /// What is lost where nodes have yielded, the sums of a [`Plastic`], and the errors of it if those of gaps are so
+    /// large.
+    pub(crate) fn plastic_sums(&self, instant: &Instant, gap_error: f64) -> [[f64; 2]; 2] {
+        let [mut found, mut errors] = [[0.0; 2]; 2];
         for node in self.all(Node::Yielded) {
             for (k, factor) in [1.0, self.load[node]].into_iter().enumerate() {
-                sums[k] -= factor * instant.gap[node];
+                found[k] -= factor * instant.gap[node];
                 errors[k] += factor * gap_error;
             }
         }
-        let [found, rate_errors] = self.plastic_per_load();
-        [Plastic { sums, per_load: found }, Plastic { sums: errors, per_load: rate_errors }]
+        [found, errors]
     }
 
     /// How much of it each unit of the sum of pressures adds, and the errors.
-    pub(crate) fn plastic_per_load(&self) -> [[f64; 2]; 2] {
+    fn plastic_per_load(&self) -> [[f64; 2]; 2] {
         let (stiffness, error) = (self.rate.sum(), self.stiffness_error());
         let [mut found, mut errors] = [[0.0; 2]; 2];
         if stiffness > 0.0 {
@@ -520,13 +521,39 @@ impl<'a> ContactSet<'a> {
         [found, errors]
     }
 
-    pub(crate) fn dense(&self) -> &'a Dense {
-        self.dense
-    }
-
-    /// Whether approaches are those of the mean planes, where no distant point stays put.
-    pub(crate) fn is_gauged(&self) -> bool {
-        self.dense.is_gauged()
+    /// `Ok` if stiffnesses, and what is lost of each newton, are those of this set.
+    pub(crate) fn check_rates(&self, found: &Scalars, tally: &mut Tally) -> Result<(), Violation> {
+        if let Some(plastic) = found.plastic {
+            let [expected, errors] = self.plastic_per_load();
+            for (k, what) in
+                ["plastic volume by load", "plastic work by load"].into_iter().enumerate()
+            {
+                tally.close(what, plastic.per_load[k], expected[k], errors[k])?;
+            }
+        }
+        let [(contact, error), (expected, interfacial_error)] = self.stiffnesses();
+        ensure!(
+            found.stiffness.is_none() == self.dense.is_gauged(),
+            "the contact stiffness is {:?}, where a distant point stays put: {}",
+            found.stiffness,
+            !self.dense.is_gauged()
+        );
+        if let Some(stiffness) = found.stiffness {
+            tally.close("contact stiffness", stiffness, contact, error * contact.abs())?;
+        }
+        let Some(interfacial) = found.interfacial else {
+            return Err(Violation::new("there is no interfacial stiffness"));
+        };
+        if self.all(Node::Out).next().is_none() {
+            ensure!(
+                interfacial == f64::INFINITY,
+                "in full contact the interfacial stiffness is {interfacial:e}"
+            );
+        } else if interfacial_error < 0.1 {
+            let allowed = interfacial_error * expected.abs();
+            tally.close("interfacial stiffness", interfacial, expected, allowed)?;
+        }
+        Ok(())
     }
 }
 

@@ -7,7 +7,7 @@ use asperity::{
 };
 use nalgebra::DVector;
 
-use crate::dense::{ContactSet, Dense, Node};
+use crate::dense::{ContactSet, Dense, Scalars};
 use crate::refusal::Circumstances;
 use crate::verdict::{Tally, Verdict, Violation, ensure};
 use crate::walk::{Demands, Walk};
@@ -211,7 +211,10 @@ impl Judge {
         }
         let set = ContactSet::new(&self.dense, contact, self.settings.tolerance);
         match set.filter(|set| set.closing_error < 0.1) {
-            Some(set) => rates_are_those_of(&set, solution, self.grid.cell_area(), tally),
+            Some(set) => {
+                let found = self.dense.scalars(&solution.contact);
+                rates_are_those_of(&set, (solution, &found), self.grid.cell_area(), tally)
+            }
             None => Ok(()),
         }
     }
@@ -306,41 +309,16 @@ impl Judge {
 /// Stiffnesses, the pressure of each newton and what is lost of it are those of a set of nodes in contact.
 pub(crate) fn rates_are_those_of(
     set: &ContactSet<'_>,
-    solution: &FixedLoadSolution,
+    (solution, found): (&FixedLoadSolution, &Scalars),
     cell_area: f64,
     tally: &mut Tally,
 ) -> Result<(), Violation> {
-    let found = set.dense().scalars(&solution.contact);
-    ensure!(
-        found.stiffness.is_none() == set.is_gauged(),
-        "the contact stiffness is {:?}",
-        found.stiffness
-    );
-    let [(stiffness, error), (expected, interfacial_error)] = set.stiffnesses();
-    if let Some(found) = found.stiffness {
-        tally.close("contact stiffness", found, stiffness, error * stiffness.abs())?;
-    }
-    let interfacial = found.interfacial.unwrap_or(f64::NAN);
-    if set.all(Node::Out).next().is_none() {
-        ensure!(
-            interfacial == f64::INFINITY,
-            "in full contact the interfacial stiffness is {interfacial:e}"
-        );
-    } else if interfacial_error < 0.1 {
-        let allowed = interfacial_error * expected.abs();
-        tally.close("interfacial stiffness", interfacial, expected, allowed)?;
-    }
+    set.check_rates(found, tally)?;
+    let [(_, error), _] = set.stiffnesses();
     let area = cell_area * set.rate.sum();
     let allowed = (set.rate_error() + error * set.rate.amax()) / area.abs();
     for (found, rate) in solution.pressure_rate.iter().zip(set.rate.iter()) {
         tally.close("rate of pressure", *found, rate / area, allowed)?;
-    }
-    if let Some(plastic) = found.plastic {
-        let [expected, errors] = set.plastic_per_load();
-        for (k, what) in ["plastic volume by load", "plastic work by load"].into_iter().enumerate()
-        {
-            tally.close(what, plastic.per_load[k], expected[k], errors[k])?;
-        }
     }
     Ok(())
 }

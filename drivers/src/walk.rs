@@ -268,7 +268,7 @@ impl<'a> Walk<'a> {
         }
         if let Some((set, instant)) = self.solved(state) {
             self.check_scalars(&found, &set, &instant)?;
-            self.check_stiffnesses(&found, &set, &instant)?;
+            set.check_rates(&found, &mut self.tally)?;
             self.check_signs(&set, &instant)?;
             self.tally.checked += 1;
             if self.dense.hardness().is_some() {
@@ -369,59 +369,13 @@ impl<'a> Walk<'a> {
         let allowed = self.gap_error + instant.carried_error;
         tally.close("mean gap", found.mean_gap, gap, allowed)?;
         if let Some(plastic) = found.plastic {
-            let [expected, errors] = set.plastic(instant, allowed);
+            let [expected, errors] = set.plastic_sums(instant, allowed);
             for (k, what) in ["plastic volume", "plastic work"].into_iter().enumerate() {
-                tally.close(what, plastic.sums[k], expected.sums[k], errors.sums[k])?;
+                tally.close(what, plastic.sums[k], expected[k], errors[k])?;
             }
         }
         let (energy, allowed) = set.energy(instant);
         tally.close("energy", found.energy, energy, allowed)
-    }
-
-    fn check_stiffnesses(
-        &mut self,
-        found: &Scalars,
-        set: &ContactSet<'_>,
-        instant: &Instant,
-    ) -> Result<(), Violation> {
-        if let Some(plastic) = found.plastic {
-            let [expected, errors] = set.plastic(instant, instant.carried_error);
-            for (k, what) in
-                ["plastic volume by load", "plastic work by load"].into_iter().enumerate()
-            {
-                self.tally.close(
-                    what,
-                    plastic.per_load[k],
-                    expected.per_load[k],
-                    errors.per_load[k],
-                )?;
-            }
-        }
-        let [(contact, error), (interfacial, interfacial_error)] = set.stiffnesses();
-        match found.stiffness {
-            Some(stiffness) => {
-                let allowed = error * contact.abs();
-                self.tally.close("contact stiffness", stiffness, contact, allowed)?;
-            }
-            None => ensure!(set.is_gauged(), "there is no contact stiffness"),
-        }
-        ensure!(
-            !(set.is_gauged() && found.stiffness.is_some()),
-            "there is a contact stiffness, but no distant point that stays put"
-        );
-        let Some(stiffness) = found.interfacial else {
-            return Err(Violation::new("there is no interfacial stiffness"));
-        };
-        if self.contact.len() + self.yielded.len() == self.dense.nodes() {
-            ensure!(
-                stiffness == f64::INFINITY,
-                "in full contact the interfacial stiffness is {stiffness:e}"
-            );
-        } else if interfacial_error < 0.1 {
-            let allowed = interfacial_error * interfacial.abs();
-            self.tally.close("interfacial stiffness", stiffness, interfacial, allowed)?;
-        }
-        Ok(())
     }
 
     /// At the approach of a state that may have come through a window.

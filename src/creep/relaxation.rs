@@ -51,6 +51,8 @@ pub struct Relaxation<'a> {
     recedes: Option<Onset>,
     /// When the path ends, and at which approach.
     ends: Option<(f64, f64)>,
+    /// When the surfaces touch.
+    touches: Option<f64>,
 }
 
 impl<'a> Relaxation<'a> {
@@ -63,7 +65,7 @@ impl<'a> Relaxation<'a> {
     /// [`Error::NotHomogeneous`] for a path on layers of several materials.
     pub fn new(bed: &'a Bed<'a>, prony: &Prony, approach: &PiecewiseLinear) -> Result<Self, Error> {
         bed.history().layering().check(Theory::Creep)?;
-        let Elastic { knots, recedes, ends } = Elastic::along(bed, approach)?;
+        let Elastic { knots, recedes, ends, touches } = Elastic::along(bed, approach)?;
         let elastic = Hereditary::creep(&Prony::elastic(1.0)?, &knots);
         Ok(Self {
             bed,
@@ -73,6 +75,7 @@ impl<'a> Relaxation<'a> {
             relaxed: Hereditary::relaxation(prony, &knots),
             recedes,
             ends,
+            touches,
         })
     }
 
@@ -137,24 +140,10 @@ impl<'a> Relaxation<'a> {
     /// When each knot of the path is reached \[s\], before contact recedes, if ever.
     #[must_use]
     pub fn times(&self) -> Vec<f64> {
-        let until = self.recession().unwrap_or(f64::INFINITY);
-        let Some(touch) = self.first_touch().filter(|touch| *touch <= until) else {
-            return Vec::new();
-        };
         // Apart, the surfaces are without load, as at first touch.
-        self.growth.times(until).into_iter().map(|time| time.max(touch)).collect()
-    }
-
-    /// When the approach reaches 0.
-    fn first_touch(&self) -> Option<f64> {
-        let corners = self.approach.corners();
-        let &(first, approach) = corners.first()?;
-        if approach >= 0.0 {
-            return Some(first);
-        }
-        let rises = corners.windows(2).find(|pair| pair[1].1 >= 0.0)?;
-        let [(from, below), (to, above)] = [rises[0], rises[1]];
-        Some(to - (to - from) * (above / (above - below)))
+        let Some(touch) = self.touches else { return Vec::new() };
+        let times = self.growth.times(self.recession().unwrap_or(f64::INFINITY));
+        times.into_iter().map(|time| time.max(touch)).collect()
     }
 
     /// The pressure at a time: see [`Creep::pressure`](super::Creep::pressure).
@@ -185,23 +174,27 @@ struct Elastic {
     knots: Vec<(f64, f64)>,
     recedes: Option<Onset>,
     ends: Option<(f64, f64)>,
+    touches: Option<f64>,
 }
 
 impl Elastic {
     fn along(bed: &Bed, approach: &PiecewiseLinear) -> Result<Self, Error> {
         let (loads, approaches) = (bed.loads(), bed.approaches());
         let mut knots: Vec<(f64, f64)> = Vec::new();
-        let mut before: Option<(f64, f64)> = None;
+        let (mut before, mut touches): (Option<(f64, f64)>, Option<f64>) = (None, None);
         for &(time, value) in approach.corners() {
             let (start, from) = before.unwrap_or((time, 0.0));
             if value < from && from > 0.0 {
                 let recedes = Onset { time: start, is_jump: time == start };
-                return Ok(Self { knots, recedes: Some(recedes), ends: None });
+                return Ok(Self { knots, recedes: Some(recedes), ends: None, touches });
             }
             // Knots on the way, which a jump passes too.
             let first = approaches.partition_point(|knot| *knot <= from.max(0.0));
             let after = approaches.partition_point(|knot| *knot < value);
             let when = |at: f64| start + (time - start) * ((at - from) / (value - from));
+            if value >= 0.0 {
+                touches = touches.or(Some(if from < 0.0 { when(0.0) } else { start }));
+            }
             if from < 0.0 && value > 0.0 {
                 knots.push((when(0.0), 0.0));
             }
@@ -215,12 +208,13 @@ impl Elastic {
                 Ok(state) => knots.push((time, state.load)),
                 Err(Error::Bed(BedError::PathEndsBefore { .. })) => {
                     knots.push((when(end), bed.last_load()));
-                    return Ok(Self { knots, recedes: None, ends: Some((when(end), end)) });
+                    let ends = Some((when(end), end));
+                    return Ok(Self { knots, recedes: None, ends, touches });
                 }
                 Err(error) => return Err(error),
             }
             before = Some((time, value));
         }
-        Ok(Self { knots, recedes: None, ends: None })
+        Ok(Self { knots, recedes: None, ends: None, touches })
     }
 }

@@ -10,6 +10,14 @@ use proptest::prelude::*;
 
 use crate::stepping::rough;
 
+/// The path of a rough surface of n × n nodes to full contact.
+fn rough_path(n: usize, seed: u64) -> History {
+    let grid = Grid::square(n, 1.0).unwrap();
+    let half_space = Boussinesq::new(grid, 1.0).unwrap();
+    let path = LoadingSolver::builder(&rough(&grid, seed), &half_space).build().unwrap();
+    path.collect::<Result<_, _>>().unwrap()
+}
+
 /// A flat punch: one element, linear. The loss of a standard linear solid in closed form, with the phase of its complex
 /// compliance.
 #[test]
@@ -63,10 +71,7 @@ fn a_linear_contact_loses_what_its_compliance_says() {
 /// A body that does not creep goes up and down the path of its modulus, and loses nothing.
 #[test]
 fn elastic_cycles_are_the_path() {
-    let grid = Grid::square(10, 1.0).unwrap();
-    let half_space = Boussinesq::new(grid, 1.0).unwrap();
-    let path = LoadingSolver::builder(&rough(&grid, 1), &half_space).build().unwrap();
-    let history: History = path.collect::<Result<_, _>>().unwrap();
+    let history = rough_path(10, 1);
     let bed = Bed::new(&history).unwrap();
     // Half of the modulus of the path: as much approach as of twice the load.
     let of_path = |load: f64| bed.at_load(2.0 * load).unwrap().approach;
@@ -95,10 +100,7 @@ proptest! {
         part in 0.05..1.0_f64,
         period in -2.0..2.0_f64,
     ) {
-        let grid = Grid::square(10, 1.0).unwrap();
-        let half_space = Boussinesq::new(grid, 1.0).unwrap();
-        let path = LoadingSolver::builder(&rough(&grid, seed), &half_space).build().unwrap();
-        let history: History = path.collect::<Result<_, _>>().unwrap();
+        let history = rough_path(10, seed);
         let bed = Bed::new(&history).unwrap();
         let terms: Vec<_> = terms.iter().map(|t| (10_f64.powf(t.0), t.1)).collect();
         let body = Prony::shares(&terms).unwrap();
@@ -123,10 +125,7 @@ proptest! {
         loads in prop::collection::vec(0.0..0.3_f64, 1..30),
         duration in -3.0..1.0_f64,
     ) {
-        let grid = Grid::square(10, 1.0).unwrap();
-        let half_space = Boussinesq::new(grid, 1.0).unwrap();
-        let path = LoadingSolver::builder(&rough(&grid, seed), &half_space).build().unwrap();
-        let history: History = path.collect::<Result<_, _>>().unwrap();
+        let history = rough_path(10, seed);
         let bed = Bed::new(&history).unwrap();
         let body = Prony::shares(&[(0.1, 0.5), (1.0, 0.3)]).unwrap();
         // By the trapezoidal rule, whose error is of second order where contact grows within a step.
@@ -183,13 +182,10 @@ fn stepped(contact: &mut ViscoelasticBed, load: f64, period: f64, cycles: usize)
 /// e^-16 or more.
 #[test]
 fn a_steady_cycle_is_one() {
-    let grid = Grid::square(12, 1.0).unwrap();
-    let half_space = Boussinesq::new(grid, 1.0).unwrap();
     let body = Prony::shares(&[(0.1, 0.3), (10.0, 0.4)]).unwrap();
     let longest = body.creep_terms().last().unwrap().time;
     for seed in [1, 2] {
-        let path = LoadingSolver::builder(&rough(&grid, seed), &half_space).build().unwrap();
-        let history: History = path.collect::<Result<_, _>>().unwrap();
+        let history = rough_path(12, seed);
         let bed = Bed::new(&history).unwrap();
         let load = 0.05 * bed.last_load();
         for share in [0.02, 0.1, 1.0] {
@@ -203,10 +199,7 @@ fn a_steady_cycle_is_one() {
 /// are 10⁻³ and more away from the steady one after a thousand.
 #[test]
 fn slow_terms_reach_the_steady_cycle() {
-    let grid = Grid::square(10, 1.0).unwrap();
-    let half_space = Boussinesq::new(grid, 1.0).unwrap();
-    let path = LoadingSolver::builder(&rough(&grid, 1), &half_space).build().unwrap();
-    let history: History = path.collect::<Result<_, _>>().unwrap();
+    let history = rough_path(10, 1);
     let bed = Bed::new(&history).unwrap();
     for terms in [
         &[(1.0, 0.3), (1000.0, 0.3)][..],
@@ -243,10 +236,7 @@ fn check_steady(bed: &Bed, body: &Prony, load: f64, period: f64, cycles: usize) 
 /// Too few cycles are an error that says how near they came.
 #[test]
 fn cycles_that_are_not_steady_yet_are_no_steady_ones() {
-    let grid = Grid::square(10, 1.0).unwrap();
-    let half_space = Boussinesq::new(grid, 1.0).unwrap();
-    let path = LoadingSolver::builder(&rough(&grid, 1), &half_space).build().unwrap();
-    let history: History = path.collect::<Result<_, _>>().unwrap();
+    let history = rough_path(10, 1);
     let bed = Bed::new(&history).unwrap();
     let body = Prony::shares(&[(1.0, 0.3), (1000.0, 0.3)]).unwrap();
     let load = 0.05 * bed.last_load();
@@ -267,10 +257,7 @@ fn cycles_that_are_not_steady_yet_are_no_steady_ones() {
 
 #[test]
 fn cycles_that_are_none_are_refused() {
-    let grid = Grid::square(8, 1.0).unwrap();
-    let half_space = Boussinesq::new(grid, 1.0).unwrap();
-    let path = LoadingSolver::builder(&rough(&grid, 1), &half_space).build().unwrap();
-    let history: History = path.collect::<Result<_, _>>().unwrap();
+    let history = rough_path(8, 1);
     let bed = Bed::new(&history).unwrap();
     let fluid = Prony::shares(&[(1.0, 1.0)]).unwrap();
     let mut flows = ViscoelasticBed::new(&bed, &fluid).unwrap();

@@ -264,8 +264,10 @@ fn profile(whole: &Whole, cutoff: Option<f64>) -> Result<Option<ProfileParameter
             )),
         };
     }
-    let along_x = if ny == 1 { whole.surface.clone() } else { whole.surface.transpose() };
-    let found = along_x.profile_parameters(cutoff);
+    let found = match ny {
+        1 => whole.surface.profile_parameters(cutoff),
+        _ => whole.surface.transpose().profile_parameters(cutoff),
+    };
     found
         .map(Some)
         .map_err(|error| Failure::new("cannot compute the roughness of the profile", error))

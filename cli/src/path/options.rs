@@ -199,6 +199,7 @@ impl Options {
         let is_left = self.unload && self.sticking.law().is_none();
         let left: &[&str] = if is_left { &RESIDUAL_SURFACES } else { &[] };
         let fields = self.fields.map_or(&[][..], Format::files);
+        let written = [&["path.csv"][..], left, fields].concat();
         for file in [&self.surface, &self.against_surface].into_iter().flatten() {
             if self.record.as_ref().is_some_and(|kept| is_same(kept, file)) {
                 return Err(Failure::request(format!(
@@ -206,9 +207,7 @@ impl Options {
                     file.display()
                 )));
             }
-            check_input(file, &self.out, &["path.csv"])?;
-            check_input(file, &self.out, left)?;
-            check_input(file, &self.out, fields)?;
+            check_input(file, &self.out, &written)?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! What tests of the program share.
 #![allow(dead_code, unreachable_pub)]
 
+use std::error::Error;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -76,4 +77,19 @@ pub fn is_refused(output: &Output, words: &[&str]) {
     for word in words {
         assert!(said.contains(word), "{word} is not in: {said}");
     }
+}
+
+/// The cells of a column of a table.
+pub fn column(file: &Path, name: &str) -> Result<Vec<String>, Box<dyn Error>> {
+    let text = fs::read_to_string(file)?;
+    let mut lines = text.lines();
+    let header = lines.next().ok_or("no header")?;
+    let place = header.split(',').position(|other| other == name);
+    let place = place.ok_or_else(|| format!("no column {name}"))?;
+    Ok(lines.map(|line| line.split(',').nth(place).unwrap_or_default().to_string()).collect())
+}
+
+/// The numbers of a column of a table.
+pub fn numbers(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
+    Ok(column(file, name)?.iter().map(|cell| cell.parse()).collect::<Result<_, _>>()?)
 }
