@@ -258,7 +258,10 @@ fn unloading(
         match unloading.at(time) {
             Ok(state) => {
                 let contact = state.contact.load;
-                let most = recession.effective_load.min(before) * (1.0 + 1e-9 + late);
+                // What is missing of the load by rounding, 1e-12 of the greatest or half of it, the contact makes up.
+                let missing = (1e-12 * greatest / state.load).min(0.5);
+                let most =
+                    recession.effective_load.min(before) * (1.0 + 1e-9 + late) / (1.0 - missing);
                 ensure!(contact <= most, "{contact:e} of {most:e} in contact at {time:e}");
                 ensure!(state.contact_time <= recession.time, "{state:?} behind {recession:?}");
                 before = contact;

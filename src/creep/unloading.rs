@@ -170,10 +170,13 @@ impl<'a, 'b> Unloading<'a, 'b> {
             let contact = self.contact(recession, time);
             let relaxes = growth.carried_by(&self.derivative, time, contact);
             let rate = load.slope(corner);
-            let is_none = load.value(Place { corner, since: 0.0 }) <= 0.0 && rate <= 0.0;
+            let value = load.value(Place { corner, since: 0.0 }).max(0.0);
+            let is_none = value == 0.0 && rate <= 0.0;
             let duration = load.duration(corner);
             let reach = if rate == 0.0 { duration.min(slowest) } else { duration };
-            if (rate - relaxes) * reach > ROUNDING * greatest && !is_none {
+            // Of a load that is hardly more than rounding itself, half is none.
+            let rounding = (ROUNDING * greatest).min(0.5 * value);
+            if (rate - relaxes) * reach > rounding && !is_none {
                 return Some(Onset { time, is_jump: false });
             }
         }

@@ -199,6 +199,20 @@ fn what_is_over_brings_nothing_back() {
     assert_eq!((unloading.returns(), unloading.at(2.5).unwrap().contact.load), (None, 0.0));
 }
 
+/// What is left of a load, however little, presses a body that flows further and further together.
+#[test]
+fn little_of_a_load_brings_contact_back() {
+    let (_, history) = history();
+    let bed = Bed::new(&history).unwrap();
+    let body = Prony::relaxation(0.0, &[(1.0, 1.0)]).unwrap();
+    let load = bed.loads()[50];
+    for part in [1e-13, 1e-11, 1e-6] {
+        let corners = PiecewiseLinear::ramp(load, 1.0).unwrap().jump(part * load).unwrap();
+        let creep = Creep::new(&bed, &body, &corners.hold(40.0).unwrap()).unwrap();
+        assert_eq!(Unloading::new(&creep).unwrap().returns(), Some(1.0), "{part}");
+    }
+}
+
 /// Up and down at one rate, of an elastic body: the contact is that of the same load on the way up.
 #[test]
 fn elastic_contact_was_made_at_the_same_load() {
