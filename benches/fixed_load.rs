@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                             .build()
                             .and_then(|mut solver| solver.solve(load * gradient))
                             .map(|solution| solution.effort.iterations)
+                            .unwrap_or_else(|error| unreachable!("{error}"))
                     });
                 });
             }
