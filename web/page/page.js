@@ -238,10 +238,14 @@ const ANSWERS = {
     show(data);
   },
   saved: ({ made: [name, type, content] }) => saveBlob(name, new Blob([content], { type })),
-  fault({ of, fault }) {
+  fault({ of, fault, isOver }) {
     if (of === "run" || of === "whole") running(false);
-    // The states are there, though the page of them is not.
-    if (of === "whole") byId("saves").hidden = fault.kind === "broken";
+    if (of === "whole") {
+      // The states are there, though the page of them is not.
+      const isBroken = fault.kind === "broken";
+      byId("saves").hidden = isBroken;
+      byId("go-on").hidden = isBroken || isOver;
+    }
     showFault(fault);
   },
 };

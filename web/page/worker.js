@@ -24,11 +24,11 @@ function fault(error) {
   return { kind: "broken", message: `The computation broke down, and its surface is lost: ${why}` };
 }
 
-const told = (type, work) => {
+const told = (type, work, more = {}) => {
   try {
     work();
   } catch (error) {
-    postMessage({ type: "fault", of: type, fault: fault(error) });
+    postMessage({ type: "fault", of: type, fault: fault(error), ...more });
   }
 };
 
@@ -79,7 +79,8 @@ async function run() {
   if (failed?.kind !== "broken" && path.states() > 0) {
     progress();
     postMessage({ type: "fields" });
-    told("whole", () => postMessage({ type: "whole", data: path.whole(), isOver: !more }));
+    const isOver = !more;
+    told("whole", () => postMessage({ type: "whole", data: path.whole(), isOver }), { isOver });
   } else postMessage({ type: "whole", data: null, isOver: true });
   if (failed) postMessage({ type: "fault", of: "path", fault: failed });
 }
