@@ -52,3 +52,28 @@ pub fn choose(format: ChartFormat) {
 pub fn chosen() -> Option<ChartFormat> {
     CHOSEN.get().copied()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Case does not matter, and what is not written is told from what is unknown.
+    #[test]
+    fn a_format_is_named_as_its_files_end() {
+        for format in [ChartFormat::Png, ChartFormat::Svg] {
+            let name = format.ending();
+            assert_eq!(ChartFormat::parse(name), Ok(format));
+            assert_eq!(ChartFormat::parse(&name.to_uppercase()), Ok(format));
+        }
+        for (name, words) in [
+            ("pdf", "PDF is not written: take svg"),
+            ("PDF", "PDF is not written: take svg"),
+            ("jpg", "png or svg"),
+            (" png", "png or svg"),
+            ("", "png or svg"),
+        ] {
+            let told = ChartFormat::parse(name).err().unwrap_or_default();
+            assert!(told.starts_with(words), "{name}: {told}");
+        }
+    }
+}

@@ -106,6 +106,24 @@ mod tests {
         assert!(ends(&pieces).values().all(|&count| count == 2));
     }
 
+    /// A plane is linear between all nodes, so that the line 3x + 4y = 71.3 is met to rounding. It runs from x = 0 to
+    /// x = 20, falls by 15, and is 25 long. Above and below may be exchanged: no node lies on it.
+    #[test]
+    fn the_contour_of_a_plane_is_straight() {
+        let plane = DMatrix::from_fn(21, 31, |ix, iy| 3.0 * ix as f64 + 4.0 * iy as f64);
+        for (field, level) in [(plane.clone(), 71.3), (-plane, -71.3)] {
+            let pieces = contour(&field, level);
+            for (x, y) in pieces.iter().flatten() {
+                assert!((3.0 * x + 4.0 * y - 71.3).abs() < 1e-12, "{x} {y}");
+            }
+            let length: f64 = pieces.iter().map(|[a, b]| (a.0 - b.0).hypot(a.1 - b.1)).sum();
+            assert!((length - 25.0).abs() < 1e-11, "{length}");
+            // The two ends at the border, and nowhere else.
+            let open = ends(&pieces).values().filter(|&&count| count == 1).count();
+            assert_eq!(open, 2);
+        }
+    }
+
     /// A single node below, among nodes that are infinitely far above: a diamond halfway to its neighbours.
     #[test]
     fn beside_infinity_the_line_is_halfway() {

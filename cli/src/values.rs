@@ -205,10 +205,10 @@ fn split(text: &str) -> Result<(&str, &str), String> {
     Ok((number.trim_end(), unit.trim_start()))
 }
 
-/// A unit without what it may be written with: `Pa·s` and `Pa s` are `Pas`, `W/(m K)` is `W/mK`, `uN` is `µN`.
+/// A unit without what it may be written with: `Pa·s` and `Pa s` are `Pas`, `N/mm^2` is `N/mm2`, `uN` is `µN`.
 fn plain(unit: &str) -> String {
     let mut plain = String::new();
-    for (k, c) in unit.chars().filter(|c| !" ·*()_".contains(*c)).enumerate() {
+    for (k, c) in unit.chars().filter(|c| !" ·*()_^".contains(*c)).enumerate() {
         match c {
             'u' | '\u{3bc}' if k == 0 => plain.push('µ'),
             'Ω' | '\u{2126}' => plain.push_str("Ohm"),
@@ -375,6 +375,69 @@ mod tests {
         }
         for text in ["", "HB", "0", "-1HV", "70HRC", "NaN", "infHB", "60HRB"] {
             assert!(hardness(text).is_err(), "{text}");
+        }
+    }
+
+    /// One quantity in two units, by the definitions of these: equal to the last bit, as both are rounded once.
+    #[test]
+    fn units_have_their_definitions() {
+        let cases: [(&'static Dimension, &[[&str; 2]]); 9] = [
+            (&LENGTH, &[["1in", "25.4mm"], ["1e6 nm", "1mm"]]),
+            (
+                &PRESSURE,
+                &[
+                    ["1ksi", "1000psi"],
+                    ["1kN/mm²", "1GPa"],
+                    ["1bar", "1000 mbar"],
+                    ["10bar", "1 N/mm2"],
+                ],
+            ),
+            (&FORCE, &[["1kgf", "9.80665N"], ["1lbf", "4.4482216152605N"]]),
+            (&TIME, &[["1d", "24h"], ["1 year", "365.25 d"], ["1000ms", "1s"]]),
+            (&SURFACE_ENERGY, &[["1 erg/cm²", "1mJ/m²"], ["1mN/m", "1000µJ/m2"]]),
+            (&VISCOSITY, &[["1cP", "1mPa·s"], ["1000 cP", "1 Pa s"]]),
+            (&RESISTIVITY, &[["1µΩ cm", "10nΩ m"]]),
+            (&CONDUCTIVITY, &[["1 W/(m K)", "1mW/(mm K)"]]),
+            (&AREA, &[["1cm²", "100mm²"], ["1mm2", "1e6 µm2"], ["1 um²", "1e6nm²"]]),
+        ];
+        for (dimension, pairs) in cases {
+            for [one, other] in pairs {
+                let found = dimension.positive()(one);
+                assert!(found.is_ok(), "{one}: {found:?}");
+                assert_eq!(found, dimension.positive()(other), "{one} and {other}");
+            }
+        }
+        for (text, number) in [("1GiB", 1 << 30), ("1.5kB", 1500), ("1gb", 1_000_000_000)] {
+            assert_eq!(bytes(text), Ok(number), "{text}");
+        }
+    }
+
+    /// The ends of what is allowed, and what lies beyond them.
+    #[test]
+    fn parts_and_ratios_have_bounds() {
+        type Reader = fn(&str) -> Result<f64, String>;
+        type Case = (Reader, &'static [(&'static str, f64)], &'static [&'static str]);
+        let cases: [Case; 4] = [
+            (
+                fraction,
+                &[("1", 1.0), ("100%", 1.0), ("0.5 %", 5e-3), ("1e-300", 1e-300)],
+                &["0", "0%", "-0.1", "1.000001", "100.1%", "nan", "inf", "10mm", "%", ""],
+            ),
+            (
+                poisson,
+                &[("0.5", 0.5), ("0", 0.0), ("-0.999", -0.999)],
+                &["-1", "0.500001", "nan", "inf", "0.3%", ""],
+            ),
+            (positive, &[(" 1e-300 ", 1e-300)], &["0", "-1", "nan", "inf", "1Pa"]),
+            (not_negative, &[("0", 0.0), ("2", 2.0)], &["-1", "nan", "inf", "1Pa"]),
+        ];
+        for (read, allowed, refused) in cases {
+            for (text, value) in allowed {
+                assert_eq!(read(text), Ok(*value), "{text}");
+            }
+            for text in refused {
+                assert!(read(text).is_err(), "{text}");
+            }
         }
     }
 }

@@ -6,8 +6,9 @@ mod common;
 use std::ffi::OsStr;
 use std::fs;
 
+use asperity::io::read_npy;
 use asperity_testing::report;
-use common::{Scratch, asperity, is_refused, said};
+use common::{Scratch, asperity, column, is_refused, numbers, said};
 use serde_json::Value;
 
 fn run(folder: &Scratch, line: &str) -> std::process::Output {
@@ -73,6 +74,138 @@ fn a_path_and_its_record_have_one_page() {
     let names: Vec<_> =
         two["records"].as_array().unwrap().iter().map(|record| record["name"].clone()).collect();
     assert_eq!(names, ["out/path.npz", "other.npz"]);
+}
+
+/// The value of a fact, which has this unit.
+fn fact<'a>(facts: &'a Value, name: &str, unit: &str) -> &'a Value {
+    let mut facts = facts.as_array().unwrap().iter();
+    let found = facts.find(|fact| fact["name"] == name).unwrap();
+    assert_eq!(found["unit"], unit, "{name}");
+    &found["value"]
+}
+
+/// Whether a number is the expected one, to this part of it; infinity is itself.
+fn is_near(found: f64, expected: f64, error: f64) -> bool {
+    found == expected || (found - expected).abs() <= error * expected.abs()
+}
+
+/// Bodies and target are those of the command, and states those of the table, node by node: numbers of the page are off
+/// by half of 2e-5, the step of their logarithms.
+#[test]
+fn a_page_has_the_numbers_of_the_table() {
+    let folder = Scratch::new("report-table").unwrap();
+    done(&folder, "path --nodes 16 --max-area-fraction 0.2 --report");
+    let page = data(&folder, "out/report.html");
+    let record = &page["records"][0];
+    assert!(is_near(record["nominal_area"].as_f64().unwrap(), 1e-4, 1e-12));
+    let facts = &record["facts"];
+    for (name, unit, expected) in [
+        ("composite modulus E*", "Pa", 210e9 / (1.0 - 0.3 * 0.3)),
+        ("body 1: Young's modulus", "Pa", 210e9),
+        ("body 1: Poisson's ratio", "", 0.3),
+        ("target: contact area", "1", 0.2),
+        // The generator scales its surface to this.
+        ("rms height Sq", "m", 50e-6),
+    ] {
+        let found = fact(facts, name, unit).as_f64().unwrap();
+        assert!(is_near(found, expected, 1e-12), "{name}: {found}");
+    }
+    for (name, side) in [("sides", 1e-2), ("cells", 1e-2 / 16.0)] {
+        let found = fact(facts, name, "m").as_array().unwrap();
+        let is_side = |found: &Value| is_near(found.as_f64().unwrap(), side, 1e-12);
+        assert!(found.len() == 2 && found.iter().all(is_side), "{name}: {found:?}");
+    }
+    for (name, words) in [
+        ("grid", "16 × 16 nodes"),
+        ("half-space", "free"),
+        ("body 2", "rigid"),
+        ("ended by", "the requested contact area"),
+    ] {
+        assert_eq!(fact(facts, name, ""), words);
+    }
+
+    let table = folder.join("out/path.csv");
+    let numbers = |name: &str| numbers(&table, name).unwrap();
+    let events = &record["events"];
+    let nodes = numbers("ix").into_iter().zip(numbers("iy"));
+    let nodes: Vec<u32> = nodes.map(|(ix, iy)| (ix + 16.0 * iy) as u32).collect();
+    assert_eq!(report::numbers(&events["nodes"]), nodes);
+    let kinds = report::numbers(&events["kinds"]);
+    let touches = column(&table, "event").unwrap().into_iter().map(|event| event == "touch");
+    assert!(touches.eq(kinds.into_iter().map(|kind| kind == 0)));
+    for (name, named, unit) in [
+        ("load", "load", 1.0),
+        ("approach", "approach", 1.0),
+        ("mean_gap", "mean_gap", 1.0),
+        ("contact_stiffness", "contact_stiffness", 1.0),
+        ("interfacial_stiffness", "interfacial_stiffness", 1.0),
+        ("corrected", "corrected_contact_area", 1e-4),
+    ] {
+        let (found, expected) = (report::column(events, name), numbers(named));
+        assert_eq!(found.len(), expected.len(), "{name}");
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!(is_near(found, expected / unit, 1.001e-5), "{name}: {found} {expected}");
+        }
+    }
+    let certificate = fact(&record["certificate"], "estimated error of the approach", "m");
+    assert_eq!(certificate.as_f64(), numbers("approach_error").last().copied());
+}
+
+/// Hardness and load are those of the command, and residuals what fields and object of the last state say: the page has
+/// them from a solution of its own, whose pressures and gaps are the same to rounding.
+#[test]
+fn a_page_has_the_residuals_of_the_last_state() {
+    let folder = Scratch::new("report-residuals").unwrap();
+    let line = "path --nodes 16 --periodic love --e-star 5e9 --mean-pressure 2e7 --fields npy";
+    let object = |line: &str| -> Value {
+        let output = run(&folder, &format!("{line} --json"));
+        assert!(output.status.success(), "{}", said(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    // Half of what is pressed hardest without a hardness is one that some nodes reach.
+    let hardness = 0.5 * object(line)["max_pressure"].as_f64().unwrap();
+    let last = object(&format!("{line} --hardness {hardness:e} --report"));
+    let page = data(&folder, "out/report.html");
+    let record = &page["records"][0];
+    let facts = &record["facts"];
+    for (name, unit, expected) in [
+        ("composite modulus E*", "Pa", 5e9),
+        ("hardness", "Pa", hardness),
+        ("target: load", "N", 2e7 * 1e-4),
+    ] {
+        let found = fact(facts, name, unit).as_f64().unwrap();
+        assert!(is_near(found, expected, 1e-12), "{name}: {found}");
+    }
+    assert_eq!(fact(facts, "half-space", ""), "periodic");
+    assert_eq!(fact(facts, "ended by", ""), &last["ended_by"]);
+    assert!(facts.as_array().unwrap().iter().all(|fact| fact["name"] != "body 2"));
+
+    let residual = |name: &str, unit: &str| fact(&record["certificate"], name, unit).as_f64();
+    let number = |name: &str| last[name].as_f64().unwrap();
+    let mean = number("load") / number("contact_area");
+    let field = |name: &str| read_npy(folder.join("out").join(name)).unwrap();
+    let (pressure, gap) = (field("pressure.npy"), field("gap.npy"));
+    let excess = residual("pressure beyond the hardness, over it", "").unwrap();
+    assert!((excess - (pressure.max() / hardness - 1.0)).abs() < 1e-9, "{excess}");
+    let sum = pressure.sum() * 1e-4 / 256.0 - number("load");
+    let error = residual("sum of pressures less load", "N").unwrap();
+    assert!((error - sum).abs() < 1e-9 * number("load"), "{error} {sum}");
+    // Nodes out of contact have a gap and no pressure.
+    let open = pressure.iter().zip(&gap).filter(|(pressure, _)| **pressure == 0.0);
+    let least = open.map(|(_, gap)| *gap).fold(f64::INFINITY, f64::min);
+    let found = residual("least gap out of contact", "m").unwrap();
+    assert!((found - least).abs() < 1e-9 * number("approach").abs().max(50e-6), "{found} {least}");
+    let found = residual("least pressure in contact", "Pa").unwrap();
+    let pressed = pressure.iter().copied().filter(|pressure| *pressure != 0.0);
+    let least = pressed.fold(f64::INFINITY, f64::min);
+    assert!((found - least).abs() < 1e-9 * mean, "{found} {least}");
+
+    let fields = record["fields"]["states"].as_array().unwrap();
+    let found = fields.last().unwrap()["pressure"].as_f64().unwrap();
+    assert!(is_near(found, number("max_pressure"), 1e-9), "{found}");
+    let volumes = report::column(&record["events"], "plastic_volume");
+    assert!(number("plastic_volume") > 0.0);
+    assert!(is_near(*volumes.last().unwrap(), number("plastic_volume"), 1.001e-5), "{volumes:?}");
 }
 
 /// What is no record, and what cannot be written, is said before anything is.

@@ -72,6 +72,8 @@ fn of_surface(surface: &Topography) -> Vec<Value> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{PI, SQRT_2};
+
     use super::*;
     use crate::fault::Fault;
     use crate::request::{Generation, Reading};
@@ -108,6 +110,51 @@ mod tests {
         let source = made["source"].as_str().unwrap_or_default();
         assert!(source.contains("shortest wavelength 1.25 mm, roll-off at 2.5 mm"), "{source}");
         assert!(materials().contains(r#""name":"steel""#));
+        Ok(())
+    }
+
+    /// A wave along x, of which all is known in closed form: Sq is 1/√2 of its amplitude, Sku is 3/2, and the mean of
+    /// |sin(2πj/n)| is 2 cot(π/n)/n. The sum of j sin(2πj/n) is −n/2 cot(π/n), and that of the squares of j about their
+    /// mean n(n² − 1)/12: their ratio is the slope of the mean plane. Differences of neighbours are 2 sin(π/n) times a
+    /// cosine, and there is none across the border, from the last node to the first. Only rounding is left.
+    #[test]
+    fn facts_of_a_wave_are_those_of_its_formula() -> Result<(), Fault> {
+        let (amplitude, cell, n): (f64, f64, f64) = (3e-6, 1e-3, 16.0);
+        let wave = |j: i32| 3.0 * (2.0 * PI * f64::from(j) / n).sin();
+        let row: Vec<String> = (0..16).map(|j| format!("{:.17}", wave(j))).collect();
+        let text = format!("{}\n", row.join(" ")).repeat(4);
+        let [layout, height_unit] = ["matrix", "µm"].map(|text| Some(text.to_string()));
+        let reading = Reading { layout, height_unit, side: Some(16e-3), ..Reading::default() };
+        let made = of(&Heights::read(text.as_bytes(), "wave.txt", &reading)?);
+        let facts = made["facts"].as_array().cloned().unwrap_or_default();
+        let value = |name: &str| {
+            let fact = facts.iter().find(|fact| fact["name"] == name);
+            fact.map_or(Value::Null, |fact| fact["value"].clone())
+        };
+        let is_near = |found: &Value, expected: f64| {
+            let found = found.as_f64().unwrap_or(f64::NAN);
+            (found / expected - 1.0).abs() < 1e-12
+        };
+        let cot = 1.0 / (PI / n).tan();
+        let whole = 2.0 * n * (PI / n).sin().powi(2);
+        let differences = (whole - (2.0 * PI / n).sin().powi(2)) / (n - 1.0);
+        for (name, expected) in [
+            ("rms height Sq", amplitude / SQRT_2),
+            ("mean absolute height Sa", 2.0 * amplitude * cot / n),
+            ("peak to valley Sz", 2.0 * amplitude),
+            ("kurtosis Sku, with the tilt", 1.5),
+            ("slope of the mean plane along x", -6.0 * amplitude * cot / ((n * n - 1.0) * cell)),
+            ("rms gradient", amplitude / cell * differences.sqrt()),
+        ] {
+            assert!(is_near(&value(name), expected), "{name}: {} {expected}", value(name));
+        }
+        for name in ["skewness Ssk, with the tilt", "the same along y"] {
+            assert!(value(name).as_f64().is_some_and(|zero| zero.abs() < 1e-12), "{name}");
+        }
+        assert_eq!(value("grid"), "16 × 4 nodes");
+        let (sides, cells) = (value("sides"), value("cells"));
+        assert!(is_near(&sides[0], 16e-3) && is_near(&sides[1], 4e-3), "{sides}");
+        assert!(is_near(&cells[0], cell) && is_near(&cells[1], cell), "{cells}");
         Ok(())
     }
 }
