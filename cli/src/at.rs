@@ -36,8 +36,8 @@ impl At {
         }
     }
 
-    /// Part of the name of a file: `5MPa`.
-    pub(crate) fn name(self) -> String {
+    /// The ending of the name of a file: `_5MPa`.
+    pub(crate) fn ending(self) -> String {
         let ascii = |c: char| match c {
             'µ' => 'u',
             '²' => '2',
@@ -46,11 +46,11 @@ impl At {
         let name: String = self.to_string().chars().filter(|c| *c != ' ').map(ascii).collect();
         // Beyond all prefixes there is a power of ten.
         match (name.is_ascii(), self) {
-            (true, _) => name,
-            (false, Self::Load(value)) => format!("{value:e}N"),
-            (false, Self::MeanPressure(value)) => format!("{value:e}Pa"),
-            (false, Self::Area(value)) => format!("{value:e}m2"),
-            (false, Self::AreaFraction(value)) => format!("{value:e}"),
+            (true, _) => format!("_{name}"),
+            (false, Self::Load(value)) => format!("_{value:e}N"),
+            (false, Self::MeanPressure(value)) => format!("_{value:e}Pa"),
+            (false, Self::Area(value)) => format!("_{value:e}m2"),
+            (false, Self::AreaFraction(value)) => format!("_{value:e}"),
         }
     }
 
@@ -73,7 +73,7 @@ impl At {
     pub(crate) fn check(all: &[Self], ends_there: bool) -> Result<(), Failure> {
         let twice = all.iter().enumerate().find(|(k, at)| {
             let earlier = &all[..*k];
-            earlier.iter().any(|other| other.name() == at.name())
+            earlier.iter().any(|other| other.ending() == at.ending())
         });
         if let Some((_, at)) = twice {
             return Err(Failure::request(format!("the state at {at} is asked for twice")));
@@ -138,6 +138,7 @@ mod tests {
             ("5MPa", At::MeanPressure(5e6), "5MPa"),
             ("2e6", At::MeanPressure(2e6), "2MPa"),
             ("0.5 N/mm²", At::MeanPressure(5e5), "500kPa"),
+            ("0.5N/mm^2", At::MeanPressure(5e5), "500kPa"),
             ("1.5kN", At::Load(1500.0), "1.5kN"),
             ("3uN", At::Load(3e-6), "3uN"),
             ("2mm2", At::Area(2e-6), "2mm2"),
@@ -145,7 +146,7 @@ mod tests {
             ("1e99N", At::Load(1e99), "1e99N"),
         ] {
             assert_eq!(text.parse(), Ok(at), "{text}");
-            assert_eq!(at.name(), name);
+            assert_eq!(at.ending(), format!("_{name}"));
         }
         for bad in ["", "5", "-5MPa", "0N", "101%", "5mm", "5µm", "10 K"] {
             assert_eq!(bad.parse::<At>().is_err(), bad != "5", "{bad}");

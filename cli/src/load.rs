@@ -217,7 +217,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         });
         match solved {
             Ok(solution) => {
-                let picture = options.out.join(format!("contact_map_{}.png", at.name()));
+                let picture = options.out.join(format!("contact_map{}.png", at.ending()));
                 let FixedLoadSolution { contact, fields, .. } = &solution;
                 outcome.written(draw_map(
                     &grid,
@@ -373,7 +373,7 @@ const FIELDS: [&str; 2] = ["pressure", "gap"];
 
 /// The name of the file of a field.
 fn field_file(field: &str, at: At) -> String {
-    format!("{field}_{}.npy", at.name())
+    format!("{field}{}.npy", at.ending())
 }
 
 /// Writes the fields of a state.

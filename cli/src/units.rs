@@ -57,12 +57,17 @@ pub fn of(si_unit: &str, greatest: f64) -> (f64, String) {
 
 /// A time with up to four digits, from a quarter of an hour on in a unit that the command line reads too.
 pub fn time(seconds: f64) -> String {
+    time_to(seconds, 4)
+}
+
+/// The same with other digits.
+pub fn time_to(seconds: f64, digits: usize) -> String {
     const DAY: f64 = 86_400.0;
     const UNITS: [(f64, f64, &str); 3] =
         [(DAY, DAY, "d"), (3600.0, 3600.0, "h"), (900.0, 60.0, "min")];
     match UNITS.iter().find(|(least, ..)| (*least..1e6 * DAY).contains(&seconds)) {
-        Some((_, unit, name)) => format!("{} {name}", plain(seconds / unit, 4)),
-        None => quantity(seconds, "s", 4),
+        Some((_, unit, name)) => format!("{} {name}", plain(seconds / unit, digits)),
+        None => quantity(seconds, "s", digits),
     }
 }
 
@@ -116,5 +121,6 @@ mod tests {
         ] {
             assert_eq!(time(seconds), text);
         }
+        assert_eq!(time_to(10_234.0, 2), "2.8 h");
     }
 }

@@ -343,7 +343,7 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
     let measured = fs::read(common::data("surface_files/missing_f64.x3p"))?;
     fs::write(folder.join("cut.x3p"), &measured[..measured.len() / 2])?;
     fs::create_dir(folder.join("folder"))?;
-    for name in ["input.npy", "gap_1N.npy", "path.csv", "load.csv"] {
+    for name in ["input.npy", "gap_1N.npy", "path.csv", "conductance.csv", "load.csv"] {
         fs::copy(common::data("selfaffine_48.npy"), folder.join(name))?;
     }
     for (line, words) in [
@@ -353,6 +353,14 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
         ),
         ("path --nodes 32 --record nowhere/r.npz", &["nowhere/r.npz"]),
         ("path --surface path.csv --side 1 --e-star 1 --out .", &["path.csv would be replaced"]),
+        (
+            "path --surface conductance.csv --side 1 --e-star 1 --out .",
+            &["conductance.csv would be replaced"],
+        ),
+        (
+            "path --surface gap_1N.npy --side 1 --e-star 1 --at 1N --fields npy --out .",
+            &["gap_1N.npy would be replaced"],
+        ),
         ("load --surface load.csv --side 1 --e-star 1 --load 1 --out .", &["load.csv would be"]),
         (
             "load --surface gap_1N.npy --side 1 --e-star 1 --at 1N --save .",

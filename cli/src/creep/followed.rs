@@ -134,7 +134,7 @@ impl<'a> Followed<'a> {
             // First to touch in this step.
             reached.resize(reached.len().max(state.contact_nodes), state.time);
         }
-        let count = states.len();
+        let count = states.len().saturating_sub(1);
         let states: Vec<CreepState> = states.into_iter().step_by(2).collect();
         let error = difference(&states, &rough) / 3.0;
         Ok(Self {

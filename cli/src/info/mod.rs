@@ -48,7 +48,8 @@ pub(crate) struct Options {
 
     /// Print one JSON object with format, title, understood, nx, ny, side_x, side_y, missing (in the file), min, max,
     /// mean, sa, sq, sz, rms_gradient, texture (of a map without its tilt: ssk, sku, sdr, sal, str, sk, spk, svk, smrk1,
-    /// smrk2), profile (of one row: cutoff, evaluation_length, ra, rq, rz, rt, rsk, rku, rsm), notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
+    /// smrk2), profile (of a file with one row or one column: cutoff, evaluation_length, ra, rq, rz, rt, rsk, rku, rsm),
+    /// notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
     #[arg(long)]
     json: bool,
 

@@ -8,6 +8,7 @@ use asperity::reference::AreaLoadLaw;
 use asperity::{ContactGrowth, ContactTarget, FixedLoadSolver, InfluenceKernel};
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
+use asperity_cli::units;
 use serde_json::{Value, json};
 
 use super::job::Job;
@@ -324,7 +325,7 @@ impl fmt::Display for Expected {
             "{}about {} in contact, {} and {} of memory",
             if self.is_least { "without what adhesion adds, " } else { "" },
             counted(self.contact.round(), "node"),
-            quantity(self.seconds, "s", 2),
+            units::time_to(self.seconds, 2),
             quantity(self.bytes, "B", 2)
         )
     }

@@ -25,12 +25,17 @@ pub(crate) enum Format {
 pub(super) const RESIDUAL_SURFACES: [&str; 2] = ["residual_surface.npy", "residual_surface.x3p"];
 
 impl Format {
-    /// The files of the last state.
-    pub(super) fn files(self) -> &'static [&'static str] {
+    /// The files of a state, with an ending of their names.
+    pub(super) fn files(self, ending: &str) -> [String; 3] {
+        ["pressure", "gap", "plastic_depth"].map(|field| self.file(field, ending))
+    }
+
+    /// The file of a field.
+    fn file(self, field: &str, ending: &str) -> String {
         match self {
-            Self::Npy => &["pressure.npy", "gap.npy", "plastic_depth.npy"],
-            Self::Gsf => &["pressure.gsf", "gap.gsf", "plastic_depth.gsf"],
-            Self::Vti => &["fields.vti"],
+            Self::Npy => format!("{field}{ending}.npy"),
+            Self::Gsf => format!("{field}{ending}.gsf"),
+            Self::Vti => format!("fields{ending}.vti"),
         }
     }
 }
@@ -59,24 +64,17 @@ pub(crate) fn write(
         written.map(|()| name.clone()).map_err(|error| Failure::writing(&name, error))
     };
     if let Format::Vti = format {
-        let name = directory.join(format!("fields{ending}.vti"));
+        let name = directory.join(format.file("", ending));
         let all: Vec<_> = fields.iter().map(|(name, field)| (*name, field)).collect();
         let written = write_vti(&name, grid, &all);
         return named(name, written).map(|name| vec![name]);
     }
     let one = |(field, values): &(&str, DMatrix<f64>)| {
-        let (name, written) = match format {
-            Format::Gsf => {
-                let name = directory.join(format!("{field}{ending}.gsf"));
-                let unit = if *field == "pressure" { "Pa" } else { "m" };
-                let written = write_gsf(&name, grid, values, unit);
-                (name, written)
-            }
-            _ => {
-                let name = directory.join(format!("{field}{ending}.npy"));
-                let written = write_npy(&name, values);
-                (name, written)
-            }
+        let name = directory.join(format.file(field, ending));
+        let unit = if *field == "pressure" { "Pa" } else { "m" };
+        let written = match format {
+            Format::Gsf => write_gsf(&name, grid, values, unit),
+            _ => write_npy(&name, values),
         };
         named(name, written)
     };

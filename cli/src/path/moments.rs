@@ -42,7 +42,7 @@ pub(super) fn write(
 ) -> Result<Vec<PathBuf>, Failure> {
     let failed = |error| Failure::new(format!("cannot compute the fields at {at}"), error);
     let found = solver.fields_at(state).map_err(failed)?;
-    let ending = format!("_{}", at.name());
+    let ending = at.ending();
     let name = directory.join(format!("contact_map{ending}.png"));
     let mut files = vec![map::draw(job, state, &found, &name)?];
     if let Some(format) = format {

@@ -192,14 +192,19 @@ impl Ends {
     }
 }
 
+/// The tables of a path, be they asked for or not.
+const TABLES: [&str; 4] = ["path.csv", "conductance.csv", "interface.csv", "unloading.csv"];
+
 impl Options {
     /// `Ok` if the states that are asked for make sense together, and no surface is replaced.
     pub(super) fn check(&self) -> Result<(), Failure> {
         At::check(&self.at, self.has_open_end())?;
         let is_left = self.unload && self.sticking.law().is_none();
         let left: &[&str] = if is_left { &RESIDUAL_SURFACES } else { &[] };
-        let fields = self.fields.map_or(&[][..], Format::files);
-        let written = [&["path.csv"][..], left, fields].concat();
+        let states = [String::new()].into_iter().chain(self.at.iter().map(|at| at.ending()));
+        let fields = states.flat_map(|ending| self.fields.map(|format| format.files(&ending)));
+        let tables = TABLES.iter().chain(left).map(ToString::to_string);
+        let written: Vec<String> = tables.chain(fields.flatten()).collect();
         for file in [&self.surface, &self.against_surface].into_iter().flatten() {
             if self.record.as_ref().is_some_and(|kept| is_same(kept, file)) {
                 return Err(Failure::request(format!(

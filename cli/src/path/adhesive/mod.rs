@@ -30,6 +30,7 @@ use super::options::{Options, Rule};
 use super::summary::Summary;
 use super::updater::Updater;
 use crate::advice::told;
+use crate::at::At;
 use course::Course;
 
 /// What does not go with adhesion, and why.
@@ -182,7 +183,7 @@ pub(super) fn follow(
     }
     outcome.written(charts::draw(job, &followed, &options.out));
     for (at, state) in &followed.reached {
-        outcome.all_written(write_at(options, job, &followed, (&at.name(), state)));
+        outcome.all_written(write_at(options, job, &followed, (*at, state)));
     }
     if let Some(at) = followed.missed.first() {
         outcome.note(Err(Failure::request(format!(
@@ -209,10 +210,10 @@ fn write_at(
     options: &Options,
     job: &Job,
     followed: &course::Followed,
-    (name, state): (&str, &AdhesiveState),
+    (at, state): (At, &AdhesiveState),
 ) -> Result<Vec<PathBuf>, Failure> {
     let (found, nodes) = fields_at(followed, state)?;
-    let ending = format!("_{name}");
+    let ending = at.ending();
     let map = options.out.join(format!("contact_map{ending}.png"));
     let mut files = vec![map::draw(&job.grid(), state, (&found, &nodes), &map)?];
     if let Some(format) = options.fields {
