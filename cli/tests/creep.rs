@@ -3,10 +3,13 @@
 mod common;
 
 use std::error::Error;
+use std::f64::consts::{E, PI, TAU};
 use std::fs;
 use std::path::Path;
 
+use asperity::record::LoadingRecord;
 use common::{Scratch, data, is_refused, output, said};
+use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -124,6 +127,205 @@ fn a_rubber_leaks_less_and_less() -> Done {
     is_refused(&back, &["contact recedes from t = ", "--time"]);
     let half = output(&folder.0, &format!("creep path.npz {SERIES} --load 1e-8 --viscosity 1"))?;
     assert_eq!(half.status.code(), Some(2));
+    Ok(())
+}
+
+/// A path of 24 × 24 nodes to 80 % contact, its record, and its last load.
+fn with_long_record(name: &str) -> Result<(Scratch, LoadingRecord, f64), Box<dyn Error>> {
+    let folder = Scratch::new(name)?;
+    let path = "path --nodes 24 --e-star 1e9 --max-area-fraction 0.8 --record path.npz -q";
+    run(&folder.0, path)?;
+    let record = LoadingRecord::read_npz(folder.join("path.npz"))?;
+    let end = record.states().last().ok_or("no state")?.contact.load;
+    Ok((folder, record, end))
+}
+
+fn object(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
+    Ok(serde_json::from_str(&run(folder, &format!("{line} --json"))?)?)
+}
+
+fn number(object: &Value, name: &str) -> f64 {
+    object[name].as_f64().unwrap_or(f64::NAN)
+}
+
+fn is_near(found: f64, expected: f64, tolerance: f64) -> bool {
+    (found / expected - 1.0).abs() < tolerance
+}
+
+/// A body of which nine tenths relax in 1 s has the compliance J(t) = 10 - 9 exp(-t/10 s): under a load W that is held
+/// its contact is that of the elastic path at W J(t), and comes by each state of it at a time that is known.
+#[test]
+fn facts_of_a_held_load_are_those_of_the_elastic_path() -> Done {
+    let (folder, record, end) = with_long_record("creep-facts")?;
+    let load = 0.2 * end;
+    let time_of = |effective: f64| (-10.0 * ((10.0 - effective / load) / 9.0).ln()).max(0.0);
+    let (reached, time) = (0.999 * end, time_of(0.999 * end));
+    let line = format!("creep path.npz --prony 1,0.9 --load {load:e}");
+    let found = object(&folder.0, &format!("{line} --time {time:e} --out held"))?;
+    let elastic = record.history().at_load(reached).ok_or("no state")?.contact;
+    for (name, expected) in [
+        ("time", time),
+        ("load", load),
+        ("effective_load", reached),
+        ("approach", elastic.approach),
+        ("contact_nodes", elastic.contact_nodes as f64),
+        ("contact_area_fraction", elastic.contact_area_fraction),
+        ("mean_gap", elastic.mean_gap),
+    ] {
+        // Scalars of a path are exact to 1e-10 or so, and gaps are small differences here.
+        assert!(is_near(number(&found, name), expected, 1e-8), "{name}: {expected} {found}");
+    }
+    assert_eq!((&found["method"], number(&found, "fluidity")), (&"closed form".into(), 0.0));
+    // Cycles would need ten times the load, which this path does not reach.
+    for name in ["step_error", "recedes", "enough_until", "cycles"] {
+        assert!(found[name].is_null() && found.get(name).is_some(), "{name}: {found}");
+    }
+    assert!(found.get("leaks").is_none());
+    let (header, rows) = table(&folder.join("held/creep.csv"))?;
+    assert_eq!(number(&found, "states"), rows.len() as f64);
+    for (name, cell) in header.split(',').zip(&rows[rows.len() - 1]) {
+        assert!(is_near(number(&found, name), *cell, 1e-15), "{name}: {cell} {found}");
+    }
+
+    let patches = object(&folder.0, "patches path.npz --out patches")?;
+    let mut passed = 0;
+    for name in ["percolates_x", "percolates_y", "seals_x", "seals_y"] {
+        match patches[name]["load"].as_f64().filter(|passage| *passage < reached) {
+            None => assert!(found[name].is_null(), "{name}: {found}"),
+            Some(passage) => {
+                let difference = number(&found, name) - time_of(passage);
+                assert!(difference.abs() < 1e-8 * time, "{name}: {difference} {found}");
+                passed += 1;
+            }
+        }
+    }
+    assert!(passed > 0, "{patches}");
+
+    // What the path does not reach is an answer too.
+    let short = output(&folder.0, &format!("{line} --time 1e3 --json"))?;
+    is_refused(&short, &["is enough until t = "]);
+    let short: Value = serde_json::from_slice(&short.stdout)?;
+    let until = number(&short, "enough_until");
+    assert!(is_near(until, -10.0 * (5.0_f64 / 9.0).ln(), 1e-9), "{short}");
+    assert!(number(&short, "time") <= until && number(&short, "effective_load") <= end, "{short}");
+    Ok(())
+}
+
+/// A body that flows, J(t) = 1 + t/4 s; and an approach that is held, at which what is left of the load is what is left
+/// of the modulus.
+#[test]
+fn facts_of_flow_and_relaxation() -> Done {
+    let (folder, record, end) = with_long_record("creep-flow")?;
+    let load = 0.2 * end;
+    let line = format!("creep path.npz --prony 4,1 --load {load:e} --time 8");
+    let flows = object(&folder.0, &line)?;
+    assert!(is_near(number(&flows, "fluidity"), 0.25, 1e-12), "{flows}");
+    assert!(is_near(number(&flows, "effective_load"), 3.0 * load, 1e-12), "{flows}");
+    assert!(flows["cycles"].is_null(), "{flows}");
+
+    let elastic = record.history().at_load(0.5 * end).ok_or("no state")?.contact;
+    let line = format!("creep path.npz --prony 1,0.5 4,0.25 --approach {:e}", elastic.approach);
+    let relaxes = object(&folder.0, &line)?;
+    for (name, expected) in [
+        // A hundred times the longest.
+        ("time", 400.0),
+        ("approach", elastic.approach),
+        ("effective_load", 0.5 * end),
+        ("load", 0.25 * 0.5 * end),
+        ("contact_nodes", elastic.contact_nodes as f64),
+        ("mean_gap", elastic.mean_gap),
+    ] {
+        assert!(is_near(number(&relaxes, name), expected, 1e-8), "{name}: {expected} {relaxes}");
+    }
+    assert_eq!(relaxes["method"], "closed form");
+    assert!(relaxes["cycles"].is_null() && relaxes["recedes"].is_null(), "{relaxes}");
+    Ok(())
+}
+
+/// A load that grows to W in 1 s and falls by W/5 a second behind it, on a body of J(t) = 2 - exp(-t/2 s): its rate of
+/// the effective load is J(t) - J(t-1) - J(t-1)/5, which is 0 where exp(-t/2) = 0.4/(1.2 e^½ - 1).
+#[test]
+fn facts_of_contact_that_recedes() -> Done {
+    let (folder, _, end) = with_long_record("creep-recedes")?;
+    let load = 0.4 * end;
+    let history = format!("time,load\n0,0\n1,{load:e}\n3,{:e}\n", 0.6 * load);
+    fs::write(folder.join("load.csv"), history)?;
+    let found = object(&folder.0, "creep path.npz --prony 1,0.5 --history load.csv")?;
+    assert_eq!(found["method"], "steps");
+    let recedes = -2.0 * (0.4 / (1.2 * E.sqrt() - 1.0)).ln();
+    assert!(is_near(number(&found, "recedes"), recedes, 1e-9), "{recedes} {found}");
+    // The integral of J from 2 s to 3 s, less a fifth of that from 0 to 2 s: steps of a load that is linear are exact.
+    let grows = 2.0 - 2.0 * ((-1.0_f64).exp() - (-1.5_f64).exp());
+    let falls = 0.2 * (2.0 + 2.0 * (-1.0_f64).exp());
+    for (name, expected) in
+        [("time", 3.0), ("load", 0.6 * load), ("effective_load", load * (grows - falls))]
+    {
+        assert!(is_near(number(&found, name), expected, 1e-8), "{name}: {expected} {found}");
+    }
+    let error = number(&found, "step_error");
+    assert!(error > 0.0 && error < 0.01, "{found}");
+    assert!(found["enough_until"].is_null() && found["cycles"].is_null(), "{found}");
+    Ok(())
+}
+
+/// Cycles of the object are those of the file, at frequencies from a twentieth of the slowest of J(t) = 2 - exp(-t/2 s)
+/// to twenty times the fastest of R(t) = (1 + exp(-t/1 s))/2.
+#[test]
+fn cycles_of_the_object_are_those_of_the_file() -> Done {
+    let (folder, _, end) = with_long_record("creep-cycles")?;
+    let load = 0.4 * end;
+    let line = format!("creep path.npz --prony 1,0.5 --load {load:e} --time 1 --out cycles");
+    let found = object(&folder.0, &line)?;
+    let cycles = found["cycles"].as_array().ok_or("no cycles")?;
+    let (header, rows) = table(&folder.join("cycles/creep_cycles.csv"))?;
+    assert_eq!((cycles.len(), rows.len()), (16, 16));
+    let names: Vec<&str> = header.split(',').collect();
+    assert_eq!(names[4..], ["stiffness", "loss_factor", "cycles", "distance"]);
+    for (k, (cycle, row)) in cycles.iter().zip(&rows).enumerate() {
+        for (name, cell) in names.iter().zip(row) {
+            let is_told = cycle.get(name).is_some();
+            assert!(!is_told || is_near(number(cycle, name), *cell, 1e-15), "{name}: {cycle}");
+        }
+        assert!(is_near(number(cycle, "mean_load"), load, 1e-15));
+        let frequency = 800.0_f64.powf(k as f64 / 15.0) / (20.0 * TAU * 2.0);
+        // Times of creep are roots.
+        assert!(is_near(row[0], frequency, 1e-10), "{frequency} {row:?}");
+        assert!(is_near(row[1], 0.2 * load, 1e-14));
+        assert!(is_near(row[4], row[1] / row[2], 1e-14));
+        assert!(is_near(row[5], row[3] / (PI * row[1] * row[2]), 1e-14));
+        assert!(row[6] >= 1.0 && row[7] <= 1e-4, "{row:?}");
+    }
+    Ok(())
+}
+
+/// Cycles so small that no node joins or leaves are those of a linear body: the complex compliance is 1 + 1/(1 + 2iω),
+/// over the stiffness of the path between two nodes, and the energy lost goes with the sine of its phase.
+#[test]
+fn small_cycles_are_linear() -> Done {
+    let (folder, record, end) = with_long_record("creep-linear")?;
+    // The load of long creep is in the middle of the widest stretch between two states of much contact.
+    let states: Vec<(f64, f64)> =
+        record.states().iter().map(|state| (state.contact.load, state.contact.approach)).collect();
+    let width = |pair: &[(f64, f64)]| pair[1].0 - pair[0].0;
+    let within = states.windows(2).filter(|pair| pair[0].0 > 0.5 * end && pair[1].0 < 0.9 * end);
+    let pair = within.max_by(|a, b| width(a).total_cmp(&width(b))).ok_or("no stretch")?;
+    let stiffness = width(pair) / (pair[1].1 - pair[0].1);
+    let load = 0.25 * (pair[0].0 + pair[1].0);
+    let line = format!(
+        "creep path.npz --prony 1,0.5 --load {load:e} --cycle-amplitude {:e} --time 1 --out small",
+        0.05 * width(pair)
+    );
+    run(&folder.0, &line)?;
+    let (_, rows) = table(&folder.join("small/creep_cycles.csv"))?;
+    for row in rows {
+        let twice = 2.0 * TAU * row[0];
+        let storage = 1.0 + 1.0 / (1.0 + twice * twice);
+        let loss = twice / (1.0 + twice * twice);
+        let size = storage.hypot(loss);
+        // 64 steps of a cycle leave some 0.3 %, and so does the distance from the steady one.
+        assert!(is_near(row[4], stiffness / size, 0.01), "{stiffness} {size} {row:?}");
+        assert!(is_near(row[5], loss / size, 0.01), "{} {row:?}", loss / size);
+    }
     Ok(())
 }
 

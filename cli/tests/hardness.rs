@@ -6,7 +6,9 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use common::{Scratch, column, is_refused, numbers, output, said};
+use asperity::number::quantity;
+use common::{Scratch, column, is_refused, numbers, output, run, said};
+use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -180,6 +182,62 @@ fn single_loads_have_a_hardness_too() -> Done {
         let path = numbers(&folder.join("path/path.csv"), name)?;
         let load = numbers(&folder.join("load/load.csv"), name)?;
         assert_eq!(path.last(), load.first(), "{name}");
+    }
+    Ok(())
+}
+
+/// What yields under single loads is what yields on the path to each of them, though the greatest is solved for first;
+/// the volume is that of the plastic depths, and each cubic metre of it costs the hardness in joules.
+#[test]
+fn plastic_columns_of_loads_are_those_of_the_path() -> Done {
+    let folder = Scratch::new("hardness_columns")?;
+    fs::copy(common::data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    let hardness = 0.032;
+    let surface = format!("--surface rough.npy --side 1e-2 --e-star 1 --hardness {hardness}");
+    let path = format!("path {surface} --max-load 5e-8 --at 20nN,40nN --fields npy --json");
+    let path: Value = serde_json::from_slice(&run(&folder.0, &path)?.stdout)?;
+    let number = |object: &Value, name: &str| object[name].as_f64().unwrap_or(f64::NAN);
+    let words = finished(
+        &folder.0,
+        &format!("load {surface} --load 5e-8 --load 2e-8 --load 4e-8 --out load"),
+    )?;
+    let table = folder.join("load/load.csv");
+    let expected = [&path, &path["at"][0], &path["at"][1]];
+    for (row, expected) in expected.into_iter().enumerate() {
+        // Gaps of single loads are right to 1e-8 of the approach, which is less than 1e-4 of the plastic depths.
+        for name in [
+            "load",
+            "approach",
+            "mean_gap",
+            "yielded_area_fraction",
+            "plastic_volume",
+            "plastic_work",
+            "energy",
+        ] {
+            let (found, expected) = (numbers(&table, name)?[row], number(expected, name));
+            assert!((found / expected - 1.0).abs() < 1e-4, "{name}: {found} {expected}");
+        }
+        let greatest = numbers(&table, "max_pressure")?[row];
+        assert!((greatest / hardness - 1.0).abs() < 1e-9, "{greatest}");
+        let volume = numbers(&table, "plastic_volume")?[row];
+        let share = numbers(&table, "yielded_area_fraction")?[row];
+        let said = format!(
+            "{} nodes yielded, plastic volume {}, energy lost {}",
+            (2304.0 * share).round(),
+            quantity(volume, "m³", 4),
+            quantity(hardness * volume, "J", 4)
+        );
+        assert!(words.contains(&said), "{said}: {words}");
+        let work = hardness * number(expected, "plastic_volume");
+        assert!((number(expected, "plastic_work") / work - 1.0).abs() < 1e-12, "{expected}");
+    }
+    let depths = asperity::io::read_npy(folder.join("out/plastic_depth.npy"))?;
+    let volume = depths.sum() * 1e-4 / 2304.0;
+    assert!((number(&path, "plastic_volume") / volume - 1.0).abs() < 1e-9, "{volume} {path}");
+    // Nothing of it where nothing yields.
+    finished(&folder.0, "load --surface rough.npy --side 1e-2 --e-star 1 --load 2e-8 --out hard")?;
+    for name in ["yielded_area_fraction", "plastic_volume", "plastic_work"] {
+        assert_eq!(numbers(&folder.join("hard/load.csv"), name)?, [0.0], "{name}");
     }
     Ok(())
 }

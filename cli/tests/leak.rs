@@ -6,7 +6,7 @@ use std::error::Error;
 use std::ffi::OsStr;
 use std::fs;
 
-use common::{Scratch, asperity, is_refused};
+use common::{Scratch, asperity, data, is_refused, numbers};
 use serde_json::Value;
 
 fn run(folder: &Scratch, arguments: &[&str]) -> std::io::Result<std::process::Output> {
@@ -127,6 +127,77 @@ fn gases_leak_and_narrow_gaps_do_not() -> Result<(), Box<dyn Error>> {
     let (limited, words) = leak("--least-gap 20um")?;
     assert!(step(&limited)? < step(&liquid)?, "{words}");
     assert!(words.contains("through gaps of 20 µm and less"), "{words}");
+    Ok(())
+}
+
+/// A number as people write it: `1.234 × 10⁻⁵`.
+fn spoken(text: &str) -> Result<f64, Box<dyn Error>> {
+    let plain = |letter: char| match "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|other| other == letter)
+    {
+        Some(place) => "-0123456789".chars().nth(place),
+        None => Some(letter),
+    };
+    Ok(text.replace(" × 10", "e").chars().filter_map(plain).collect::<String>().parse()?)
+}
+
+/// Rates in words are those of the file and of the object: 1 m³/s is 6 · 10⁷ ml/min, and 1 Pa m³/s is 10 mbar l/s.
+/// A surface of 1 cm by 2 cm is 2 cm wide for what flows along x.
+#[test]
+fn rates_in_words_are_those_of_the_file() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("leak-words")?;
+    fs::copy(data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    let printed = |line: &str| -> Result<String, Box<dyn Error>> {
+        let done = run(&folder, &line.split_whitespace().collect::<Vec<_>>())?;
+        assert!(done.status.success(), "{line}");
+        Ok(String::from_utf8(done.stdout)?)
+    };
+    let surface = "--surface rough.npy --side 1cm --side-y 2cm --material steel";
+    printed(&format!("path {surface} --max-area-fraction 0.1 --record path.npz --out path"))?;
+    let loads = numbers(&folder.join("path/path.csv"), "load")?;
+    let load = 0.3 * loads.last().ok_or("no state")?;
+    for (axis, across) in [("x", 0.02), ("y", 0.01)] {
+        for gas in ["", "--gas-outlet-pressure 3bar"] {
+            let line = format!(
+                "leak path.npz --viscosity 0.018mPa·s --pressure-drop 2bar --along {axis} {gas} --load {load:e}"
+            );
+            let words = printed(&format!("{line} --states 5 --out seen"))?;
+            // Four digits.
+            let near = |found: f64, expected: f64| {
+                assert!((found / expected - 1.0).abs() < 5.001e-4, "{found} {expected}: {words}");
+            };
+            let file = folder.join("seen/leak.csv");
+            let rates = numbers(&file, "leak_rate")?;
+            let estimates = numbers(&file, "mean_field_leak_rate")?;
+            let mut table = words.lines().skip_while(|line| !line.contains("ml/min/m"));
+            let units: Vec<&str> = table.next().ok_or("no units")?.split_whitespace().collect();
+            assert_eq!(units[5..9], ["m³/s", "ml/min", "ml/min/m", "m³/s"], "{words}");
+            assert_eq!(rates.len(), 5);
+            for (rate, estimate) in rates.iter().zip(estimates) {
+                let row = table.next().ok_or("no row")?;
+                let cells: Vec<&str> = row.split_whitespace().collect();
+                assert_eq!(cells.len(), units.len(), "{row}");
+                near(cells[5].parse()?, *rate);
+                near(cells[6].parse()?, 6e7 * rate);
+                near(cells[7].parse()?, 6e7 * rate / across);
+                near(cells[8].parse()?, estimate);
+            }
+
+            let json = printed(&format!("{line} --states 0 --json --out json"))?;
+            let document: Value = serde_json::from_str(&json)?;
+            let rate = document["leak_rate"].as_f64().ok_or("no rate")?;
+            let told = words.lines().find_map(|line| line.split_once(": leak rate "));
+            let told: Vec<&str> = told.ok_or("no leak")?.1.split(", ").collect();
+            let mut expected = vec![("", " m³/s", rate), ("", " ml/min", 6e7 * rate)];
+            if !gas.is_empty() {
+                expected.push(("throughput ", " mbar l/s", 10.0 * 3e5 * rate));
+            }
+            assert_eq!(told.len(), expected.len(), "{words}");
+            for (told, (before, behind, value)) in told.into_iter().zip(expected) {
+                let number = told.strip_prefix(before).and_then(|told| told.strip_suffix(behind));
+                near(spoken(number.ok_or(told)?)?, value);
+            }
+        }
+    }
     Ok(())
 }
 

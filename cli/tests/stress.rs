@@ -4,14 +4,20 @@
 mod common;
 
 use std::error::Error;
+use std::f64::consts::{PI, TAU};
 use std::fs;
 
+use asperity::io::write_npy;
 use asperity::record::LoadingRecord;
 use asperity::stress::{Measure, Subsurface};
-use common::{Scratch, is_refused, output, run};
+use common::{Scratch, is_refused, numbers, output, run};
+use nalgebra::DMatrix;
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
+
+/// The measures of the file, in its order.
+const NAMES: [&str; 4] = ["von_mises", "tresca", "greatest_shear", "greatest_tension"];
 
 /// Steel against glass: what is printed is what the library finds, for both bodies; tractions on the second are
 /// opposite.
@@ -85,6 +91,102 @@ fn depths_may_be_given() -> Done {
     assert_eq!(document["bodies"][0]["depths"], serde_json::json!([1e-5]));
     assert_eq!(document["bodies"][0]["von_mises"]["depth"].as_f64(), Some(1e-5));
     assert!(folder.join("seen/stress.png").exists());
+    Ok(())
+}
+
+/// The measures of a tensor (xx, yy, zz, yz, xz, xy) in the order of the file; principal stresses by the angle of Lode.
+fn measures([xx, yy, zz, yz, xz, xy]: [f64; 6]) -> [f64; 4] {
+    let mean = (xx + yy + zz) / 3.0;
+    let (a, b, c) = (xx - mean, yy - mean, zz - mean);
+    let second = 0.5 * (a * a + b * b + c * c) + yz * yz + xz * xz + xy * xy;
+    let third = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+    let radius = 2.0 * (second / 3.0).sqrt();
+    let angle = (4.0 * third / radius.powi(3)).clamp(-1.0, 1.0).acos() / 3.0;
+    let greatest = mean + radius * angle.cos();
+    let least = mean + radius * (angle + TAU / 3.0).cos();
+    [(3.0 * second).sqrt(), greatest - least, 0.5 * (greatest - least), greatest]
+}
+
+/// At each depth every measure is the greatest of those of the tensors there, and that of the node beside it.
+#[test]
+fn columns_are_the_greatest_of_the_tensors() -> Done {
+    let folder = Scratch::new("stress-columns")?;
+    run(&folder.0, "path --nodes 16 --e-star 1e11 --record path.npz --out path -q")?;
+    let record = LoadingRecord::read_npz(folder.join("path.npz"))?;
+    let load = 0.5 * record.states().last().ok_or("no state")?.contact.load;
+    // Not in the order of their depths.
+    let line = format!(
+        "stress path.npz --poisson 0.3 --load {load:e} --friction 0.2 --angle 30 --depth 2e-3 --depth 0 --depth 3e-4"
+    );
+    run(&folder.0, &format!("{line} --out seen"))?;
+    let file = folder.join("seen/stress.csv");
+    assert_eq!(numbers(&file, "body")?, [1.0; 3]);
+    assert_eq!(numbers(&file, "depth")?, [0.0, 3e-4, 2e-3]);
+    for found in numbers(&file, "load")? {
+        assert!((found / load - 1.0).abs() < 1e-14, "{found} {load}");
+    }
+
+    let state = record.history().at_load(load).ok_or("no state")?;
+    let mut path = record.replay()?;
+    let pressure = path.fields_at(&state)?.pressure;
+    let below = Subsurface::of_record(&record, 0.3)?.sliding(0.2, 30_f64.to_radians())?;
+    for (row, depth) in [0.0, 3e-4, 2e-3].into_iter().enumerate() {
+        let field = below.at_depth(&pressure, depth)?;
+        let at = |ix: usize, iy: usize| measures(field.components().map(|part| part[(ix, iy)]));
+        let all: Vec<[f64; 4]> = (0..256).map(|k| at(k % 16, k / 16)).collect();
+        let greatest = |k: usize| all.iter().map(|own| own[k]).fold(f64::NEG_INFINITY, f64::max);
+        let cell = |column: &str| numbers(&file, column).map(|cells| cells[row]);
+        for (k, name) in NAMES.into_iter().enumerate() {
+            let value = cell(name)?;
+            let (ix, iy) = (cell(&format!("{name}_ix"))?, cell(&format!("{name}_iy"))?);
+            // Where two principal stresses are equal the angle has half of the digits.
+            let near = |other: f64| (value - other).abs() < 1e-7 * greatest(0);
+            let there = at(ix as usize, iy as usize)[k];
+            assert!(near(greatest(k)), "{name} at {depth}: {value} {}", greatest(k));
+            assert!(near(there), "{name} at {depth}: {value} {there}");
+        }
+        // A product with 1/2 is exact.
+        assert_eq!(cell("greatest_shear")?, 0.5 * cell("tresca")?);
+    }
+    Ok(())
+}
+
+/// One cell that carries all the load: below its middle two principal stresses are equal, and all are those of Love's
+/// square of half side a under a uniform pressure p, of which 2(1 + ν) p times the solid angle over 2π is the sum.
+#[test]
+fn stresses_below_one_cell_are_loves() -> Done {
+    let folder = Scratch::new("stress-cell")?;
+    let mut heights = DMatrix::<f64>::zeros(16, 16);
+    heights[(7, 4)] = 1e-5;
+    write_npy(folder.join("peak.npy"), &heights)?;
+    // Of 1 mm a cell; the plane around the peak touches at 1 kN or so.
+    let path = "path --surface peak.npy --side 16mm --e-star 1e11 --max-load 2 --record path.npz";
+    run(&folder.0, &format!("{path} --out path -q"))?;
+    let line = "stress path.npz --poisson 0.3 --depth 0.5mm --depth 1mm --depth 2mm --out seen";
+    run(&folder.0, line)?;
+    let file = folder.join("seen/stress.csv");
+    let (p, a) = (2e6, 0.5e-3_f64);
+    for (row, z) in [0.5e-3_f64, 1e-3, 2e-3].into_iter().enumerate() {
+        let far = (2.0 * a * a + z * z).sqrt();
+        let corner = (a * a / (z * far)).atan();
+        let down = 2.0 * p / PI * (corner + 2.0 * a * a * z / (far * (a * a + z * z)));
+        let sum = 1.3 * p * 4.0 * corner / PI;
+        let across = 0.5 * (sum - down);
+        for (name, expected) in [
+            ("von_mises", down - across),
+            ("tresca", down - across),
+            ("greatest_shear", 0.5 * (down - across)),
+        ] {
+            let found = numbers(&file, name)?[row];
+            // Sums of eight logarithms and arcs each, and a transform, to rounding.
+            assert!((found / expected - 1.0).abs() < 1e-10, "{name}: {found} {expected}");
+            for (side, node) in [("ix", 7.0), ("iy", 4.0)] {
+                assert_eq!(numbers(&file, &format!("{name}_{side}"))?[row], node, "{name}");
+            }
+        }
+        // Tension is no less than that across the axis.
+        assert!(numbers(&file, "greatest_tension")?[row] >= -across - 1e-10 * p);
+    }
     Ok(())
 }
 

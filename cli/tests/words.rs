@@ -253,6 +253,59 @@ fn units_are_understood_and_chosen() -> Done {
     Ok(())
 }
 
+/// Files are in SI units whatever is chosen, and the rows on the screen are theirs in mm, N and MPa, to four digits.
+#[test]
+fn rows_in_millimetres_are_those_of_the_files() -> Done {
+    let folder = with_surface("millimetres")?;
+    let surface = "--surface rough.npy --side 1cm --material steel";
+    let path = format!("path {surface} --mean-pressure 50MPa --record path.npz");
+    let load = format!("load {surface} --at 20MPa,50MPa");
+    let stress = "stress path.npz --depth 0.1mm --depth 0.3mm".to_string();
+    for (line, file) in [(path, "path.csv"), (load, "load.csv"), (stress, "stress.csv")] {
+        run(&folder.0, &format!("{line} --out si"))?;
+        let words = printed(&run(&folder.0, &format!("{line} --units mm-N-MPa --out mm"))?);
+        let [si, mm] = ["si", "mm"].map(|name| folder.join(name).join(file));
+        assert_eq!(fs::read(&si)?, fs::read(mm)?, "{file}");
+        if file == "stress.csv" {
+            continue;
+        }
+        let mut table = words.lines().skip_while(|line| !line.contains("mean gap")).skip(1);
+        let units: Vec<&str> = table.next().ok_or("no units")?.split_whitespace().collect();
+        assert_eq!(units, ["N", "MPa", "MPa", "mm²", "%", "%", "mm", "mm", "N/mm", "N/mm"]);
+        let rows: Vec<&str> = table.take_while(|line| !line.trim().is_empty()).collect();
+        // On 100 mm².
+        let columns = [
+            (0, "load", 1.0),
+            (1, "load", 1e-2),
+            (2, "max_pressure", 1e-6),
+            (3, "contact_area", 1e6),
+            (4, "contact_area", 1e6),
+            (5, "corrected_contact_area", 1e6),
+            (6, "approach", 1e3),
+            (7, "mean_gap", 1e3),
+            (8, "contact_stiffness", 1e-3),
+            (9, "interfacial_stiffness", 1e-3),
+        ];
+        for (place, name, unit) in columns {
+            // There is no greatest pressure in path.csv.
+            if name == "max_pressure" && file == "path.csv" {
+                continue;
+            }
+            // Of a path the table has some of the states, and the last.
+            let values = numbers(&si, name)?;
+            let shown = if file == "path.csv" { 1 } else { values.len() };
+            assert!(rows.len() >= shown && values.len() >= shown, "{words}");
+            for (row, value) in rows.iter().rev().zip(values.iter().rev()).take(shown) {
+                let cell = row.split_whitespace().nth(place).ok_or("no cell")?;
+                let found: f64 = cell.parse()?;
+                let expected = unit * value;
+                assert!((found / expected - 1.0).abs() < 5.001e-4, "{name}: {expected} {row}");
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The roughness that is asked for is that of the surface, isotropic or not.
 #[test]
 fn generated_surfaces_have_the_roughness_that_is_asked_for() -> Done {
