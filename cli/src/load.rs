@@ -275,7 +275,7 @@ fn solve(
 }
 
 /// The columns of load.csv, in SI units.
-const COLUMNS: [&str; 13] = [
+const COLUMNS: [&str; 15] = [
     "load",
     "contact_nodes",
     "max_pressure",
@@ -289,6 +289,8 @@ const COLUMNS: [&str; 13] = [
     "corrected_contact_area",
     "yielded_area_fraction",
     "plastic_volume",
+    "plastic_work",
+    "energy",
 ];
 
 /// The numbers of those columns and of conductances, by name; nothing where there is none.
@@ -310,6 +312,8 @@ fn numbers(solution: &FixedLoadSolution, row: &Row, grid: &Grid) -> Vec<(&'stati
         exact(row.corrected_area),
         exact(row.yielded.unwrap_or(0.0)),
         exact(state.plastic.map_or(0.0, |plastic| plastic.volume)),
+        exact(state.plastic.map_or(0.0, |plastic| plastic.work)),
+        exact(state.energy),
     ];
     let conducted = row.conductances.iter();
     let some = |value: f64| optional(Some(value).filter(|value| !value.is_nan()));

@@ -22,7 +22,7 @@ pub struct Cycle {
     /// Amplitude of the load over that of the approach \[N/m\]; infinite where that does not change, in full contact of
     /// a periodic half-space.
     pub stiffness: f64,
-    /// Energy lost over π times both amplitudes: the tangent of the phase as far as the contact is linear.
+    /// Energy lost over π times both amplitudes: the sine of the phase as far as the contact is linear.
     pub loss_factor: f64,
     /// The last cycle, (approach, load).
     pub path: Vec<(f64, f64)>,

@@ -53,8 +53,8 @@ fn a_linear_contact_loses_what_its_compliance_says() {
         );
         assert!((cycle.approach_amplitude / amplitude - 1.0).abs() < 1e-4, "{period}");
         assert!(cycle.distance <= 1e-12, "{cycle:?}");
-        let tangent = imaginary / real.hypot(imaginary);
-        assert!((cycle.loss_factor / tangent - 1.0).abs() < 2e-4);
+        let sine = imaginary / real.hypot(imaginary);
+        assert!((cycle.loss_factor / sine - 1.0).abs() < 2e-4);
         assert!((cycle.stiffness * amplitude / 2.0 - 1.0).abs() < 1e-4, "{period}");
         // An ellipse about what the mean load settles to.
         assert_eq!(cycle.path.len(), 401);

@@ -73,8 +73,9 @@ pub(crate) struct Options {
     pub(super) pieces: u32,
 
     /// Print one JSON object: the last state with time, load, effective_load, approach, contact_nodes,
-    /// contact_area_fraction and mean_gap; method, step_error, recedes, enough_until; percolates_x, percolates_y,
-    /// seals_x, seals_y (seconds, or null); cycles; leaks, with a fluid. Files are written only if --out is given
+    /// contact_area_fraction and mean_gap; method, step_error, recedes, enough_until, states (their number), fluidity;
+    /// percolates_x, percolates_y, seals_x, seals_y (seconds, or null); cycles; leaks, with a fluid. Files are written
+    /// only if --out is given
     #[arg(long)]
     pub(super) json: bool,
 
