@@ -198,7 +198,7 @@ impl Judge {
         Ok(tally)
     }
 
-    /// Stiffnesses are those of the contact of the solution, solved to its tolerance.
+    /// Stiffnesses are those of the contact of the solution.
     fn check_stiffness(
         &self,
         solution: &FixedLoadSolution,
@@ -209,7 +209,9 @@ impl Judge {
             ensure!(!self.settings.stiffness, "there is no stiffness");
             return Ok(());
         }
-        let set = ContactSet::new(&self.dense, contact, self.settings.tolerance);
+        // Iterations end at half the tolerance, and so does what steps in single precision are estimated to spoil; on
+        // cells of 8000 : 1 that was some three times as much.
+        let set = ContactSet::new(&self.dense, contact, 2.0 * self.settings.tolerance);
         match set.filter(|set| set.closing_error < 0.1) {
             Some(set) => {
                 let found = self.dense.scalars(&solution.contact);

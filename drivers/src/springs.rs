@@ -199,9 +199,11 @@ impl Springs {
             }
             let shift = self.shift(bound, force - self.force());
             let mut part = 1.0_f64;
+            // Those that move with their bounds but for rounding would stick and slip in turn for ever.
+            let slower = bound - 1e-12 * bound.abs();
             for spring in &mut self.springs {
                 match spring.hold {
-                    Hold::Slips(sign) if sign * shift < bound => spring.hold = Hold::Sticks,
+                    Hold::Slips(sign) if sign * shift < slower => spring.hold = Hold::Sticks,
                     _ => (),
                 }
                 if spring.hold == Hold::Sticks {
