@@ -8,7 +8,7 @@ use std::path::Path;
 
 use asperity::adhesion::{AdhesiveEvent, AdhesiveState, Direction};
 use asperity::record::AdhesiveRecord;
-use common::{Scratch, is_refused, output, run, said};
+use common::{Scratch, answer, is_refused, number, output, run, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -18,15 +18,6 @@ type Done = Result<(), Box<dyn Error>>;
 const SOFT: &str =
     "path --nodes 32 --side 100um --rolloff 50um --short-cutoff 25um --sq 2um --e-star 1MPa";
 const STICKS: &str = "--work-of-adhesion 50mJ/m²";
-
-/// The only line of stdout, as JSON.
-fn answer(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    Ok(serde_json::from_slice(&run(folder, &format!("{line} --json"))?.stdout)?)
-}
-
-fn number(object: &Value, name: &str) -> f64 {
-    object[name].as_f64().unwrap_or(f64::NAN)
-}
 
 /// The cells of a file by column.
 struct Table(Vec<Vec<String>>);

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use asperity::record::LoadingRecord;
-use common::{Scratch, data, is_refused, output, said};
+use common::{Scratch, answer, data, is_refused, number, output, said};
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
@@ -108,14 +108,13 @@ fn a_rubber_leaks_less_and_less() -> Done {
     assert!((last[1] / (load / 0.2) - 1.0).abs() < 1e-12, "{}", last[1]);
     assert!(last[5] < 0.9 * first[5]);
     for row in [first, &rows[rows.len() / 2], last] {
-        let elastic = format!("leak path.npz {fluid} --states 0 --load {:e} --json", row[1]);
-        let found: serde_json::Value = serde_json::from_str(&run(&folder.0, &elastic)?)?;
+        let elastic = format!("leak path.npz {fluid} --states 0 --load {:e}", row[1]);
+        let found = answer(&folder.0, &elastic)?;
         let found = found["leak_rate"].as_f64().ok_or("no leak rate")?;
         // The same state of the same path, with the same arithmetic up to rounding of the effective load.
         assert!((found / row[5] - 1.0).abs() < 1e-9, "{found} {}", row[5]);
     }
-    let json: serde_json::Value =
-        serde_json::from_str(&run(&folder.0, &format!("{line} --json"))?)?;
+    let json = answer(&folder.0, &line)?;
     assert_eq!(json["leaks"].as_array().map(Vec::len), Some(rows.len()));
     // An approach that is held is contact that is held.
     let held = format!("creep path.npz {SERIES} --approach 1e-4 {fluid} --out held");
@@ -140,14 +139,6 @@ fn with_long_record(name: &str) -> Result<(Scratch, LoadingRecord, f64), Box<dyn
     Ok((folder, record, end))
 }
 
-fn object(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    Ok(serde_json::from_str(&run(folder, &format!("{line} --json"))?)?)
-}
-
-fn number(object: &Value, name: &str) -> f64 {
-    object[name].as_f64().unwrap_or(f64::NAN)
-}
-
 fn is_near(found: f64, expected: f64, tolerance: f64) -> bool {
     (found / expected - 1.0).abs() < tolerance
 }
@@ -161,7 +152,7 @@ fn facts_of_a_held_load_are_those_of_the_elastic_path() -> Done {
     let time_of = |effective: f64| (-10.0 * ((10.0 - effective / load) / 9.0).ln()).max(0.0);
     let (reached, time) = (0.999 * end, time_of(0.999 * end));
     let line = format!("creep path.npz --prony 1,0.9 --load {load:e}");
-    let found = object(&folder.0, &format!("{line} --time {time:e} --out held"))?;
+    let found = answer(&folder.0, &format!("{line} --time {time:e} --out held"))?;
     let elastic = record.history().at_load(reached).ok_or("no state")?.contact;
     for (name, expected) in [
         ("time", time),
@@ -187,7 +178,7 @@ fn facts_of_a_held_load_are_those_of_the_elastic_path() -> Done {
         assert!(is_near(number(&found, name), *cell, 1e-15), "{name}: {cell} {found}");
     }
 
-    let patches = object(&folder.0, "patches path.npz --out patches")?;
+    let patches = answer(&folder.0, "patches path.npz --out patches")?;
     let mut passed = 0;
     for name in ["percolates_x", "percolates_y", "seals_x", "seals_y"] {
         match patches[name]["load"].as_f64().filter(|passage| *passage < reached) {
@@ -218,14 +209,14 @@ fn facts_of_flow_and_relaxation() -> Done {
     let (folder, record, end) = with_long_record("creep-flow")?;
     let load = 0.2 * end;
     let line = format!("creep path.npz --prony 4,1 --load {load:e} --time 8");
-    let flows = object(&folder.0, &line)?;
+    let flows = answer(&folder.0, &line)?;
     assert!(is_near(number(&flows, "fluidity"), 0.25, 1e-12), "{flows}");
     assert!(is_near(number(&flows, "effective_load"), 3.0 * load, 1e-12), "{flows}");
     assert!(flows["cycles"].is_null(), "{flows}");
 
     let elastic = record.history().at_load(0.5 * end).ok_or("no state")?.contact;
     let line = format!("creep path.npz --prony 1,0.5 4,0.25 --approach {:e}", elastic.approach);
-    let relaxes = object(&folder.0, &line)?;
+    let relaxes = answer(&folder.0, &line)?;
     for (name, expected) in [
         // A hundred times the longest.
         ("time", 400.0),
@@ -250,7 +241,7 @@ fn facts_of_contact_that_recedes() -> Done {
     let load = 0.4 * end;
     let history = format!("time,load\n0,0\n1,{load:e}\n3,{:e}\n", 0.6 * load);
     fs::write(folder.join("load.csv"), history)?;
-    let found = object(&folder.0, "creep path.npz --prony 1,0.5 --history load.csv")?;
+    let found = answer(&folder.0, "creep path.npz --prony 1,0.5 --history load.csv")?;
     assert_eq!(found["method"], "steps");
     let recedes = -2.0 * (0.4 / (1.2 * E.sqrt() - 1.0)).ln();
     assert!(is_near(number(&found, "recedes"), recedes, 1e-9), "{recedes} {found}");
@@ -275,7 +266,7 @@ fn cycles_of_the_object_are_those_of_the_file() -> Done {
     let (folder, _, end) = with_long_record("creep-cycles")?;
     let load = 0.4 * end;
     let line = format!("creep path.npz --prony 1,0.5 --load {load:e} --time 1 --out cycles");
-    let found = object(&folder.0, &line)?;
+    let found = answer(&folder.0, &line)?;
     let cycles = found["cycles"].as_array().ok_or("no cycles")?;
     let (header, rows) = table(&folder.join("cycles/creep_cycles.csv"))?;
     assert_eq!((cycles.len(), rows.len()), (16, 16));

@@ -7,8 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use asperity::number::quantity;
-use common::{Scratch, column, is_refused, numbers, output, run, said};
-use serde_json::Value;
+use common::{Scratch, answer, column, is_refused, number, numbers, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -194,9 +193,8 @@ fn plastic_columns_of_loads_are_those_of_the_path() -> Done {
     fs::copy(common::data("selfaffine_48.npy"), folder.join("rough.npy"))?;
     let hardness = 0.032;
     let surface = format!("--surface rough.npy --side 1e-2 --e-star 1 --hardness {hardness}");
-    let path = format!("path {surface} --max-load 5e-8 --at 20nN,40nN --fields npy --json");
-    let path: Value = serde_json::from_slice(&run(&folder.0, &path)?.stdout)?;
-    let number = |object: &Value, name: &str| object[name].as_f64().unwrap_or(f64::NAN);
+    let path = format!("path {surface} --max-load 5e-8 --at 20nN,40nN --fields npy");
+    let path = answer(&folder.0, &path)?;
     let words = finished(
         &folder.0,
         &format!("load {surface} --load 5e-8 --load 2e-8 --load 4e-8 --out load"),

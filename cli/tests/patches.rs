@@ -8,8 +8,7 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use asperity::record::LoadingRecord;
-use common::{Scratch, column, numbers, run};
-use serde_json::Value;
+use common::{Scratch, answer, column, number, numbers, run};
 
 /// A folder of one test alone.
 fn folder(name: &str) -> Result<PathBuf, Box<dyn Error>> {
@@ -156,9 +155,7 @@ fn the_object_is_what_a_walk_finds() -> Result<(), Box<dyn Error>> {
     for (boundary, is_joined) in [("", false), ("--periodic love", true)] {
         let line = format!("path --nodes 16 {boundary} --e-star 1e11 --max-area-fraction 0.7 -q");
         run(&folder.0, &format!("{line} --record p.npz --out path"))?;
-        let done = run(&folder.0, "patches p.npz --json --at-area-fraction 0.35 --out seen")?;
-        let object: Value = serde_json::from_slice(&done.stdout)?;
-        let number = |object: &Value, name: &str| object[name].as_f64().unwrap_or(f64::NAN);
+        let object = answer(&folder.0, "patches p.npz --at-area-fraction 0.35 --out seen")?;
 
         let table = folder.join("path/path.csv");
         let loads = numbers(&table, "load")?;

@@ -9,8 +9,7 @@ use std::path::Path;
 
 use asperity::io::write_npy;
 use asperity::nalgebra::DMatrix;
-use common::{Scratch, is_refused, output, run, said};
-use serde_json::Value;
+use common::{Scratch, answer, is_refused, output, run, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -24,10 +23,6 @@ fn write(file: &Path, nodes: usize, height: impl Fn(f64) -> f64) -> std::io::Res
     fs::write(file, format!("# x [mm]; z [µm]\n{lines}"))
 }
 
-fn object(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    Ok(serde_json::from_slice(&run(folder, &format!("{line} --json"))?.stdout)?)
-}
-
 /// Hertz: half width `√(4 W R / π E*)` under a load W per width, greatest pressure `2 W / π a`. On 512 cells of a
 /// millimetre edges are off by one cell, and the greatest pressure by a per cent.
 #[test]
@@ -37,7 +32,7 @@ fn a_cylinder_is_a_line_contact() -> Done {
     write(&folder.join("roller.csv"), nodes, |x| -(x - 0.5e-3).powi(2) / (2.0 * radius))?;
     let of = "--surface roller.csv --e-star 1GPa --periodic y --at 20kPa,100kPa,400kPa";
     for (command, states) in [("path", "at"), ("load", "states")] {
-        let found = object(&folder.0, &format!("{command} {of}"))?;
+        let found = answer(&folder.0, &format!("{command} {of}"))?;
         for (state, pressure) in
             found[states].as_array().ok_or("no states")?.iter().zip([20e3, 100e3, 400e3])
         {
@@ -72,7 +67,7 @@ fn a_wave_is_westergaards() -> Done {
     for share in [0.1, 0.3, 0.7] {
         let at = share * full;
         let line = format!("path --surface wave.csv --e-star 1GPa --periodic love --at {at:e}");
-        let width = object(&folder.0, &line)?["at"][0]["contact_area_fraction"].as_f64();
+        let width = answer(&folder.0, &line)?["at"][0]["contact_area_fraction"].as_f64();
         let expected = 2.0 / PI * share.sqrt().asin();
         let width = width.ok_or("no width")?;
         assert!((width - expected).abs() < 1.5 / f64::from(nodes as u32), "{width} {expected}");
@@ -88,7 +83,7 @@ fn the_roughness_of_a_profile_is_told() -> Done {
     write(&folder.join("sine.csv"), 4000, |x| amplitude * (TAU * x / 25e-6).sin())?;
     for (cutoff, letter) in [("", "P"), ("--cutoff 0.25mm", "R")] {
         let line = format!("info sine.csv {cutoff}");
-        let profile = &object(&folder.0, &line)?["profile"];
+        let profile = &answer(&folder.0, &line)?["profile"];
         for (name, expected) in [
             ("ra", 2.0 / PI * amplitude),
             ("rq", amplitude / 2_f64.sqrt()),
@@ -105,8 +100,8 @@ fn the_roughness_of_a_profile_is_told() -> Done {
     // The same along y is no map either.
     let column = DMatrix::from_fn(1, 4000, |_, iy| amplitude * (TAU * iy as f64 / 100.0).sin());
     write_npy(folder.join("column.npy"), &column)?;
-    let of_x = object(&folder.0, "info sine.csv --cutoff 0.25mm")?;
-    let of_y = object(&folder.0, "info column.npy --side 0.25um --cutoff 0.25mm")?;
+    let of_x = answer(&folder.0, "info sine.csv --cutoff 0.25mm")?;
+    let of_y = answer(&folder.0, "info column.npy --side 0.25um --cutoff 0.25mm")?;
     assert!(of_y["texture"].is_null());
     for name in ["ra", "rz", "rsm", "evaluation_length"] {
         let [found, expected] = [&of_y, &of_x].map(|told| told["profile"][name].as_f64());

@@ -10,8 +10,7 @@ use std::path::Path;
 use std::process::Output;
 
 use asperity_cli::number::quantity;
-use common::{Scratch, asperity, numbers, said};
-use serde_json::Value;
+use common::{Scratch, answer, asperity, number, numbers, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -29,28 +28,16 @@ fn with_record(name: &str) -> Result<Scratch, Box<dyn Error>> {
     Ok(folder)
 }
 
-fn object(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    let done = run(folder, line)?;
-    assert!(done.status.success(), "{}", said(&done));
-    let text = String::from_utf8(done.stdout)?;
-    assert_eq!(text.lines().count(), 1, "{text}");
-    Ok(serde_json::from_str(&text)?)
-}
-
-fn number(object: &Value, name: &str) -> f64 {
-    object[name].as_f64().unwrap_or(f64::NAN)
-}
-
 /// Its answers hang together, and with its tables; the history of a first loading and a cycle loses a quarter of a
 /// cycle and a whole one.
 #[test]
 fn answers_and_tables_agree() -> Done {
     let folder = with_record("slip")?;
     let folder = &folder.0;
-    let rubber = "slip path.npz --friction 0.5 --material rubber --json";
-    let default = object(folder, rubber)?;
+    let rubber = "slip path.npz --friction 0.5 --material rubber";
+    let default = answer(folder, rubber)?;
     // The record knows its bodies.
-    assert_eq!(object(folder, "slip path.npz --friction 0.5 --json")?, default);
+    assert_eq!(answer(folder, "slip path.npz --friction 0.5")?, default);
     let (load, force) = (number(&default, "load"), number(&default, "tangential_load"));
     assert!((force / (0.25 * load) - 1.0).abs() < 1e-12);
     assert!((number(&default, "compliance_ratio") - 1.5).abs() < 1e-15);
@@ -68,7 +55,7 @@ fn answers_and_tables_agree() -> Done {
     );
     fs::write(folder.join("cycle.csv"), table)?;
     let line = format!("{rubber} --amplitude {force} --load {load} --history cycle.csv --out seen");
-    let sheared = object(folder, &line)?;
+    let sheared = answer(folder, &line)?;
     let lost = number(&sheared, "history_dissipation");
     assert!((lost / (1.25 * number(&default, "dissipation")) - 1.0).abs() < 1e-9, "{lost}");
 

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::Path;
 
 use asperity::io::write_npy;
-use common::{Scratch, run, said};
+use common::{Scratch, answer, run, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -16,10 +16,6 @@ type Done = Result<(), Box<dyn Error>>;
 fn words(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
     let done = run(folder, line)?;
     Ok(said(&done) + &String::from_utf8(done.stdout)?)
-}
-
-fn object(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    Ok(serde_json::from_slice(&run(folder, &format!("{line} --json"))?.stdout)?)
 }
 
 /// Whether one of the warnings of an object has these words.
@@ -58,7 +54,7 @@ fn what_is_wrong_with_a_state_in_between_is_said_where_it_is_asked_for() -> Done
         assert!(last.contains("the greatest pressure is"), "{last}");
     }
     let line = format!("path --at 5N,2kN {BALL} --material 210e9,0.3");
-    assert!(warns(&object(folder, &line)?, few));
+    assert!(warns(&answer(folder, &line)?, few));
     Ok(())
 }
 
@@ -70,12 +66,12 @@ fn peaks_of_the_border_are_said_everywhere() -> Done {
     let border = "is at the border of the grid";
     for (load, is_cut) in [(2000, false), (8000, true)] {
         let path = format!("path {BALL} --material 210e9,0.3 --max-load {load} --record r.npz");
-        assert_eq!(warns(&object(folder, &path)?, border), is_cut, "{load}");
+        assert_eq!(warns(&answer(folder, &path)?, border), is_cut, "{load}");
         assert_eq!(words(folder, &path)?.contains(border), is_cut, "{load}");
         // People who want to read nothing but warnings read them.
         assert_eq!(words(folder, &format!("{path} --quiet"))?.contains(border), is_cut, "{load}");
         assert_eq!(words(folder, "patches r.npz")?.contains(border), is_cut, "{load}");
-        assert_eq!(warns(&object(folder, "patches r.npz")?, border), is_cut, "{load}");
+        assert_eq!(warns(&answer(folder, "patches r.npz")?, border), is_cut, "{load}");
         let single = format!("load {BALL} --material 210e9,0.3 --load {load}");
         assert_eq!(words(folder, &single)?.contains(border), is_cut, "{load}");
     }
@@ -96,7 +92,7 @@ fn few_nodes_of_one_patch_are_said_everywhere() -> Done {
         let path =
             format!("path {BALL} --material steel --max-area-fraction {share} --record r.npz");
         assert_eq!(words(folder, &path)?.contains(few), is_few, "{nodes}");
-        let ended = object(folder, &path)?;
+        let ended = answer(folder, &path)?;
         assert_eq!(warns(&ended, few), is_few, "{nodes}");
         assert_eq!(words(folder, "patches r.npz")?.contains(few), is_few, "{nodes}");
         let load = &ended["load"];
@@ -167,7 +163,7 @@ fn contact_without_a_load_is_said() -> Done {
     let told = words(&folder.0, line)?;
     assert!(told.contains("25 nodes touch at the same height"), "{told}");
     assert!(told.contains("`--max-load`"), "{told}");
-    assert!(warns(&object(&folder.0, line)?, "touch at the same height"));
+    assert!(warns(&answer(&folder.0, line)?, "touch at the same height"));
     // The path of a flat surface ends there whatever is asked for, and a single load does not.
     let all = "path --surface flat.npy --side 1e-3 --material steel --max-load 10";
     let told = words(&folder.0, all)?;
@@ -187,10 +183,10 @@ fn fluids_that_open_the_gap_are_said() -> Done {
     let open = "the fluid would open the gap";
     let states = format!("{leak} 1e3");
     assert!(!words(folder, &states)?.contains(open));
-    assert_eq!(object(folder, &states)?["warnings"], serde_json::json!([]));
+    assert_eq!(answer(folder, &states)?["warnings"], serde_json::json!([]));
     let states = format!("{leak} 1e9");
     assert!(words(folder, &states)?.contains(open));
-    assert!(warns(&object(folder, &states)?, "`--pressure-drop`"));
+    assert!(warns(&answer(folder, &states)?, "`--pressure-drop`"));
     // 2.5 N on 1 cm² are 25 kPa.
     for (drop, is_large) in [("1e7", true), ("1e3", true), ("400", false)] {
         let one = format!("{leak} {drop} --load 2.5 --states 0");

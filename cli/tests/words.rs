@@ -10,7 +10,7 @@ use std::process::Output;
 
 use asperity::io::write_npy;
 use asperity::surface::Topography;
-use common::{Scratch, asperity, data, is_refused, numbers, output, run, said};
+use common::{Scratch, answer, asperity, data, is_refused, numbers, output, run, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -161,8 +161,7 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
         let picture = fs::read(folder.join(&format!("out/contact_map_{name}.png")))?;
         assert!(picture.starts_with(b"\x89PNG"));
     }
-    let object: Value =
-        serde_json::from_str(&printed(&run(&folder.0, &format!("{line} --json"))?))?;
+    let object = answer(&folder.0, line)?;
     let found = object["states"].as_array().ok_or("no states")?;
     for (place, state) in found.iter().enumerate() {
         assert_eq!(state["load"].as_f64(), Some(numbers(&file, "load")?[place]));
@@ -180,14 +179,11 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
 fn states_are_asked_for() -> Done {
     let folder = Scratch::new("at")?;
     let path = "path --nodes 32 --fields npy --at";
-    let object = |line: &str| -> Result<Value, Box<dyn Error>> {
-        Ok(serde_json::from_str(&printed(&run(&folder.0, &format!("{line} --json"))?))?)
-    };
     let words = printed(&run(&folder.0, &format!("{path} 5MPa,2kN,50MPa"))?);
     let rows = words.lines().skip_while(|line| !line.contains("mean gap")).skip(2);
     let rows: Vec<&str> = rows.take_while(|line| !line.is_empty()).collect();
     assert_eq!(rows.len(), 3, "{words}");
-    let found = object(&format!("{path} 5MPa,2kN,50MPa"))?;
+    let found = answer(&folder.0, &format!("{path} 5MPa,2kN,50MPa"))?;
     let (states, end) = (&found["at"], &found["load"]);
     for (place, (name, load)) in
         [("5MPa", 500.0), ("2kN", 2000.0), ("50MPa", 5000.0)].into_iter().enumerate()
@@ -204,7 +200,7 @@ fn states_are_asked_for() -> Done {
     }
     assert_eq!(end.as_f64(), Some(5000.0));
     // Areas too, with an end of the path that lies beyond them.
-    let found = object(&format!("{path} 10%,5MPa --max-area-fraction 20%"))?;
+    let found = answer(&folder.0, &format!("{path} 10%,5MPa --max-area-fraction 20%"))?;
     assert_eq!(found["at"][0]["contact_area_fraction"].as_f64(), Some(102.0 / 1024.0));
     assert_eq!(found["at"][1]["load"].as_f64(), Some(500.0));
     is_refused(&output(&folder.0, &format!("{path} 10%,5MPa"))?, &["say where the path ends"]);
@@ -415,13 +411,11 @@ fn conductances_are_told_of_every_state() -> Done {
         let of = format!(
             "--surface rough.npy --side 1cm --material steel {hardness} --conductivity 50,50 --at 50MPa"
         );
-        let object = |command: &str| -> Result<Value, Box<dyn Error>> {
-            Ok(serde_json::from_str(&printed(&run(&folder.0, &format!("{command} {of} --json"))?))?)
-        };
         let conductance =
             |value: &Value| value["thermal_conductance"].as_f64().ok_or("no conductance");
-        let load = object("load")?;
-        let (one, path) = (conductance(&load["states"][0])?, object("path")?);
+        let load = answer(&folder.0, &format!("load {of}"))?;
+        let (one, path) =
+            (conductance(&load["states"][0])?, answer(&folder.0, &format!("path {of}"))?);
         let on_path = conductance(&path["at"][0])?;
         // The tolerance of the single load.
         assert!((one / on_path - 1.0).abs() < 1e-6, "{one} {on_path}");

@@ -7,6 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use serde_json::Value;
+
 /// A folder that is made with its test, and removed with it.
 pub struct Scratch(pub PathBuf);
 
@@ -53,6 +55,18 @@ pub fn run(folder: &Path, line: &str) -> std::io::Result<Output> {
     let done = output(folder, line)?;
     assert!(done.status.success(), "{line}: {}", said(&done));
     Ok(done)
+}
+
+/// The only line of stdout of a line that has to succeed, as JSON.
+pub fn answer(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
+    let text = String::from_utf8(run(folder, &format!("{line} --json"))?.stdout)?;
+    assert_eq!(text.lines().count(), 1, "{text}");
+    Ok(serde_json::from_str(&text)?)
+}
+
+/// A number of an object, NaN where there is none.
+pub fn number(object: &Value, name: &str) -> f64 {
+    object[name].as_f64().unwrap_or(f64::NAN)
 }
 
 /// The program under a limit that a shell sets first.
