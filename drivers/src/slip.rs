@@ -19,7 +19,7 @@ const WELL_KNOWN: f64 = 1e-9;
 const SNAPPED: f64 = 4e-12;
 /// Ratios above this part of μ are taken for it.
 const AT_LIMIT: f64 = 1.0 - 1e-12;
-/// Loads that lose digits, which are drawn as well \[N\].
+/// Loads that lose digits, which are drawn as well \[N\], and displacements \[m\].
 const UNDERFLOWS: f64 = 1e-290;
 
 /// Draws a surface on a half-space, a part of its path, friction, and steps of both loads in which equal and nearly
@@ -268,8 +268,8 @@ impl Trial<'_> {
         let steps = (self.steps + 1) as f64;
         let rounding = 64.0 * f64::EPSILON * last * approach;
         let force = coefficient * (SNAPPED * load + rounding + UNDERFLOWS) * steps;
-        let displacement =
-            ratio * (force / first + 2.0 * steps * coefficient * self.springs.deviation);
+        let deviation = 2.0 * steps * coefficient * self.springs.deviation;
+        let displacement = ratio * (force / first + deviation) + UNDERFLOWS;
         let energy = coefficient * load * displacement + force * ratio * coefficient * approach;
         [force, displacement, 4.0 * energy]
     }
