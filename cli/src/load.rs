@@ -21,6 +21,7 @@ use crate::conduction::{Conduct, conductances};
 use crate::contact_map::draw as draw_map;
 use crate::elasticity::Elasticity;
 use crate::hardness::Hardness;
+use crate::path::fields::Format;
 use crate::reading::Reading;
 use crate::resolution::Resolution;
 use crate::room;
@@ -116,7 +117,8 @@ impl Options {
     fn check_surface(&self, asked: &[At]) -> Result<(), Failure> {
         outcome::check_input(&self.surface, &self.out, &["load.csv"])?;
         let Some(directory) = &self.save else { return Ok(()) };
-        let fields = asked.iter().flat_map(|at| FIELDS.map(|name| field_file(name, *at)));
+        let fields =
+            asked.iter().flat_map(|at| FIELDS.map(|name| Format::Npy.file(name, &at.ending())));
         outcome::check_input(&self.surface, directory, &fields.collect::<Vec<_>>())
     }
 }
@@ -375,17 +377,12 @@ fn print_words(
 /// The fields that are saved.
 const FIELDS: [&str; 2] = ["pressure", "gap"];
 
-/// The name of the file of a field.
-fn field_file(field: &str, at: At) -> String {
-    format!("{field}{}.npy", at.ending())
-}
-
 /// Writes the fields of a state.
 fn save(directory: &Path, solution: &FixedLoadSolution, at: At) -> Result<Vec<PathBuf>, Failure> {
     let [pressure, gap] = FIELDS;
     let fields = [(pressure, &solution.fields.pressure), (gap, &solution.fields.gap)];
     let written = fields.map(|(name, field)| {
-        let file = directory.join(field_file(name, at));
+        let file = directory.join(Format::Npy.file(name, &at.ending()));
         match write_npy(&file, field) {
             Ok(()) => Ok(file),
             Err(error) => Err(Failure::writing(&file, error)),

@@ -5,20 +5,17 @@ mod common;
 use std::error::Error;
 use std::path::Path;
 
-use common::{Scratch, data, output, said};
+use common::{Scratch, data, only_line, output, run, said};
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
 
 /// The only line of stdout, as JSON, of a program that has nothing else to say than warnings.
 fn answer(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    let done = output(folder, line)?;
-    assert!(done.status.success(), "{}", said(&done));
-    let errors = String::from_utf8(done.stderr)?;
+    let done = run(folder, line)?;
+    let errors = said(&done);
     assert!(errors.lines().all(|line| line.starts_with("warning: ")), "{errors}");
-    let text = String::from_utf8(done.stdout)?;
-    assert_eq!(text.lines().count(), 1, "{text}");
-    Ok(serde_json::from_str(&text)?)
+    only_line(done)
 }
 
 #[test]

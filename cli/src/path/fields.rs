@@ -31,7 +31,7 @@ impl Format {
     }
 
     /// The file of a field.
-    fn file(self, field: &str, ending: &str) -> String {
+    pub(crate) fn file(self, field: &str, ending: &str) -> String {
         match self {
             Self::Npy => format!("{field}{ending}.npy"),
             Self::Gsf => format!("{field}{ending}.gsf"),

@@ -57,9 +57,14 @@ pub fn run(folder: &Path, line: &str) -> std::io::Result<Output> {
     Ok(done)
 }
 
-/// The only line of stdout of a line that has to succeed, as JSON.
+/// The answer to a line that has to succeed.
 pub fn answer(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    let text = String::from_utf8(run(folder, &format!("{line} --json"))?.stdout)?;
+    only_line(run(folder, &format!("{line} --json"))?)
+}
+
+/// The only line of stdout, as JSON.
+pub fn only_line(done: Output) -> Result<Value, Box<dyn Error>> {
+    let text = String::from_utf8(done.stdout)?;
     assert_eq!(text.lines().count(), 1, "{text}");
     Ok(serde_json::from_str(&text)?)
 }
