@@ -199,6 +199,29 @@ fn laws_are_told() -> Done {
     Ok(())
 }
 
+/// On periodic cells the compliance is that of all waves but the mean, 2/(E*|q|) each: `laws_are_told` of them.
+#[test]
+fn laws_of_periodic_cells_are_told() -> Done {
+    let folder = Scratch::new("adhesion_periodic")?;
+    let wave = |k: i32| std::f64::consts::TAU * f64::from(k) / 100e-6;
+    let waves = (-15..=16).flat_map(|kx| (-15..=16).map(move |ky| (kx, ky)));
+    let compliance = waves
+        .filter(|k| *k != (0, 0))
+        .map(|(kx, ky)| 2.0 / (1e6 * wave(kx).hypot(wave(ky))) / 1024.0)
+        .sum::<f64>();
+    let line = format!("{SOFT} {STICKS} --periodic spectral --mean-pressure 20 --unload");
+    let object = answer(&folder.0, &line)?;
+    let law = &object["law"];
+    let shortest = (2.0 * 0.05 * compliance / 0.45).sqrt();
+    for (name, expected) in
+        [("work", 0.05), ("range", shortest), ("stress", 0.1 / shortest), ("resolution", 0.45)]
+    {
+        assert!((number(law, name) / expected - 1.0).abs() < 1e-12, "{name}: {expected} {law}");
+    }
+    assert!(number(&object, "pull_off") > 0.0 && number(&object, "loop_energy") > 0.0, "{object}");
+    Ok(())
+}
+
 /// A sphere takes 3πwR/2 in the limit of JKR. With 10 cells in the radius of its contact at pull-off the force is 4 %
 /// too great, as the library says of its law; with 6 of them as here it is some 6 %, and twice that would be wrong.
 #[test]

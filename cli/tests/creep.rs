@@ -233,6 +233,45 @@ fn facts_of_flow_and_relaxation() -> Done {
     Ok(())
 }
 
+/// Put on in T = 2 s a load W has the effective load W/T times the integral of J(t) = 2 - exp(-t/2 s) over the last 2 s,
+/// and an approach that is put on is at every time that of the elastic path.
+#[test]
+fn what_is_put_on_in_time() -> Done {
+    let (folder, record, end) = with_long_record("creep-ramp")?;
+    let load = 0.4 * end;
+    let line = format!("creep path.npz --prony 1,0.5 --load {load:e} --ramp 2 --time 5 --out ramp");
+    let found = answer(&folder.0, &line)?;
+    let grown = |t: f64| 2.0 * t + 2.0 * (-0.5 * t).exp() - 2.0;
+    let effective = |t: f64| 0.5 * load * (grown(t) - grown((t - 2.0).max(0.0)));
+    for (name, expected) in [("time", 5.0), ("load", load), ("effective_load", effective(5.0))] {
+        assert!(is_near(number(&found, name), expected, 1e-9), "{name}: {expected} {found}");
+    }
+    assert!(found["recedes"].is_null(), "{found}");
+    let (_, rows) = table(&folder.join("ramp/creep.csv"))?;
+    for row in &rows {
+        assert!((row[2] - load * (0.5 * row[0]).min(1.0)).abs() < 1e-12 * load, "{row:?}");
+        assert!((row[1] - effective(row[0])).abs() < 1e-9 * load, "{row:?}");
+        let elastic = record.history().at_load(row[1]).ok_or("no state")?.contact;
+        assert!((row[3] - elastic.approach).abs() <= 1e-8 * elastic.approach, "{row:?}");
+    }
+    assert!(rows.iter().filter(|row| 0.0 < row[0] && row[0] < 2.0).count() > 5);
+
+    let elastic = record.history().at_load(0.5 * end).ok_or("no state")?.contact;
+    let line = format!("creep path.npz --prony 1,0.5 --approach {:e} --ramp 2", elastic.approach);
+    let found = answer(&folder.0, &format!("{line} --time 5 --out pressed"))?;
+    assert!(is_near(number(&found, "effective_load"), 0.5 * end, 1e-8), "{found}");
+    // Between what is left of the modulus for what was put on first, and for what was put on last.
+    let left = number(&found, "load") / (0.5 * end);
+    let [first, last] = [5.0_f64, 3.0].map(|age| 0.5 + 0.5 * (-age).exp());
+    assert!(first < left && left < last, "{left} {found}");
+    let (_, rows) = table(&folder.join("pressed/creep.csv"))?;
+    for row in &rows {
+        let approach = elastic.approach * (0.5 * row[0]).min(1.0);
+        assert!((row[3] - approach).abs() < 1e-9 * elastic.approach, "{row:?}");
+    }
+    Ok(())
+}
+
 /// A load that grows to W in 1 s and falls by W/5 a second behind it, on a body of J(t) = 2 - exp(-t/2 s): its rate of
 /// the effective load is J(t) - J(t-1) - J(t-1)/5, which is 0 where exp(-t/2) = 0.4/(1.2 e^½ - 1).
 #[test]

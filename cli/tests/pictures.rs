@@ -21,6 +21,9 @@ const NODES: f64 = 384.0;
 const INK: [u8; 3] = [34, 34, 34];
 const WHITE: [u8; 3] = [255, 255, 255];
 const YIELDED: [u8; 3] = [240, 120, 0];
+/// Colours of nodes that adhesion pulls: across a gap, and in contact.
+const APART: [u8; 3] = [196, 200, 206];
+const PULLED: [u8; 3] = [230, 0, 0];
 
 /// What a map of contact shows.
 struct Picture {
@@ -164,6 +167,42 @@ fn the_map_of_a_path_has_the_nodes_that_have_yielded() -> Done {
     assert!(yielded > 0.0);
     let orange = share(&colours, |colour| colour == YIELDED);
     assert!((orange - yielded).abs() < 1e-12, "{orange} {yielded}");
+    Ok(())
+}
+
+/// Nodes that stick are grey across a gap, and red in contact where their pressure is below 0.
+#[test]
+fn the_map_of_a_surface_that_sticks_has_the_nodes_that_are_pulled() -> Done {
+    let folder = with_surface("picture-sticks")?;
+    let surface = "--surface rough.npy --height-unit m --side 96um --side-y 64um --e-star 1MPa";
+    let line = "--work-of-adhesion 50mJ/m² --mean-pressure 5kPa --fields npy";
+    run(&folder.0, &format!("path {surface} {line}"))?;
+    let table = folder.join("out/path.csv");
+    let colours = Picture::read(&folder.join("out/contact_map.png"))?.nodes();
+    let apart = last(&table, "soft_nodes")? + last(&table, "cohesive_nodes")?;
+    assert!(apart > 0.0);
+    assert_eq!(NODES * share(&colours, |colour| colour == APART), apart);
+    let touching = share(&colours, |colour| colour != APART && colour != WHITE);
+    let fraction = last(&table, "contact_area_fraction")?;
+    assert!((touching - fraction).abs() < 1e-12, "{touching} {fraction}");
+
+    let pressure = read_npy(folder.join("out/pressure.npy"))?;
+    let (mut pulled, mut pressed) = (0, 0);
+    for (colour, pressure) in colours.iter().zip(&pressure) {
+        match *colour {
+            WHITE => assert_eq!(*pressure, 0.0),
+            APART => assert!(*pressure < 0.0, "{pressure}"),
+            PULLED => {
+                assert!(*pressure < 0.0, "{pressure}");
+                pulled += 1;
+            }
+            _ => {
+                assert!(*pressure >= 0.0, "{pressure}");
+                pressed += 1;
+            }
+        }
+    }
+    assert!(pulled > 0 && pressed > 0, "{pulled} {pressed}");
     Ok(())
 }
 

@@ -6,6 +6,7 @@ mod common;
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use std::fs;
+use std::path::Path;
 
 use asperity::io::write_npy;
 use asperity::record::LoadingRecord;
@@ -108,6 +109,30 @@ fn measures([xx, yy, zz, yz, xz, xy]: [f64; 6]) -> [f64; 4] {
 }
 
 /// At each depth every measure is the greatest of those of the tensors there, and that of the node beside it.
+fn columns_are_of(below: &Subsurface, pressure: &DMatrix<f64>, depths: [f64; 3], file: &Path) -> Done {
+    assert_eq!(numbers(file, "body")?, [1.0; 3]);
+    assert_eq!(numbers(file, "depth")?, depths);
+    for (row, depth) in depths.into_iter().enumerate() {
+        let field = below.at_depth(pressure, depth)?;
+        let at = |ix: usize, iy: usize| measures(field.components().map(|part| part[(ix, iy)]));
+        let all: Vec<[f64; 4]> = (0..256).map(|k| at(k % 16, k / 16)).collect();
+        let greatest = |k: usize| all.iter().map(|own| own[k]).fold(f64::NEG_INFINITY, f64::max);
+        let cell = |column: &str| numbers(file, column).map(|cells| cells[row]);
+        for (k, name) in NAMES.into_iter().enumerate() {
+            let value = cell(name)?;
+            let (ix, iy) = (cell(&format!("{name}_ix"))?, cell(&format!("{name}_iy"))?);
+            // Where two principal stresses are equal the angle has half of the digits.
+            let near = |other: f64| (value - other).abs() < 1e-7 * greatest(0);
+            let there = at(ix as usize, iy as usize)[k];
+            assert!(near(greatest(k)), "{name} at {depth}: {value} {}", greatest(k));
+            assert!(near(there), "{name} at {depth}: {value} {there}");
+        }
+        // A product with 1/2 is exact.
+        assert_eq!(cell("greatest_shear")?, 0.5 * cell("tresca")?);
+    }
+    Ok(())
+}
+
 #[test]
 fn columns_are_the_greatest_of_the_tensors() -> Done {
     let folder = Scratch::new("stress-columns")?;
@@ -120,33 +145,50 @@ fn columns_are_the_greatest_of_the_tensors() -> Done {
     );
     run(&folder.0, &format!("{line} --out seen"))?;
     let file = folder.join("seen/stress.csv");
-    assert_eq!(numbers(&file, "body")?, [1.0; 3]);
-    assert_eq!(numbers(&file, "depth")?, [0.0, 3e-4, 2e-3]);
     for found in numbers(&file, "load")? {
         assert!((found / load - 1.0).abs() < 1e-14, "{found} {load}");
     }
-
     let state = record.history().at_load(load).ok_or("no state")?;
     let mut path = record.replay()?;
     let pressure = path.fields_at(&state)?.pressure;
     let below = Subsurface::of_record(&record, 0.3)?.sliding(0.2, 30_f64.to_radians())?;
-    for (row, depth) in [0.0, 3e-4, 2e-3].into_iter().enumerate() {
-        let field = below.at_depth(&pressure, depth)?;
-        let at = |ix: usize, iy: usize| measures(field.components().map(|part| part[(ix, iy)]));
-        let all: Vec<[f64; 4]> = (0..256).map(|k| at(k % 16, k / 16)).collect();
-        let greatest = |k: usize| all.iter().map(|own| own[k]).fold(f64::NEG_INFINITY, f64::max);
-        let cell = |column: &str| numbers(&file, column).map(|cells| cells[row]);
-        for (k, name) in NAMES.into_iter().enumerate() {
-            let value = cell(name)?;
-            let (ix, iy) = (cell(&format!("{name}_ix"))?, cell(&format!("{name}_iy"))?);
-            // Where two principal stresses are equal the angle has half of the digits.
-            let near = |other: f64| (value - other).abs() < 1e-7 * greatest(0);
-            let there = at(ix as usize, iy as usize)[k];
-            assert!(near(greatest(k)), "{name} at {depth}: {value} {}", greatest(k));
-            assert!(near(there), "{name} at {depth}: {value} {there}");
+    columns_are_of(&below, &pressure, [0.0, 3e-4, 2e-3], &file)
+}
+
+/// Two depths in a coat of 0.2 mm and one in what it lies on.
+#[test]
+fn columns_of_a_coat_are_the_greatest_of_the_tensors() -> Done {
+    let folder = Scratch::new("stress-coat-columns")?;
+    let coat =
+        "path --nodes 16 --layer 400e9,0.25,2e-4 --base steel --record coat.npz --out path -q";
+    run(&folder.0, coat)?;
+    run(&folder.0, "stress coat.npz --depth 0 --depth 1e-4 --depth 1e-3 --out seen")?;
+    let record = LoadingRecord::read_npz(folder.join("coat.npz"))?;
+    let state = *record.states().last().ok_or("no state")?;
+    let pressure = record.replay()?.fields_at(&state)?.pressure;
+    let below = Subsurface::of_record(&record, 0.0)?;
+    columns_are_of(&below, &pressure, [0.0, 1e-4, 1e-3], &folder.join("seen/stress.csv"))
+}
+
+/// A coat of steel on steel is steel.
+#[test]
+fn a_coat_of_the_same_material_is_none() -> Done {
+    let folder = Scratch::new("stress-coat-none")?;
+    for (name, body) in [
+        ("coated", "--layer 210e9,0.3,2e-4 --base 210e9,0.3"),
+        ("plain", "--material 210e9,0.3"),
+    ] {
+        run(&folder.0, &format!("path --nodes 16 --seed 3 {body} --record {name}.npz --out path -q"))?;
+        let line = format!("stress {name}.npz --depth 1e-4 --depth 3e-4 --depth 1e-3 --out {name}");
+        run(&folder.0, &line)?;
+    }
+    let [coated, plain] = ["coated", "plain"].map(|name| folder.join(name).join("stress.csv"));
+    for column in ["load"].iter().chain(&NAMES) {
+        let found = numbers(&coated, column)?;
+        for (found, expected) in found.into_iter().zip(numbers(&plain, column)?) {
+            // Sums over waves and over cells, to rounding.
+            assert!((found / expected - 1.0).abs() < 1e-10, "{column}: {found} {expected}");
         }
-        // A product with 1/2 is exact.
-        assert_eq!(cell("greatest_shear")?, 0.5 * cell("tresca")?);
     }
     Ok(())
 }
