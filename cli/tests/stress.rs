@@ -109,7 +109,12 @@ fn measures([xx, yy, zz, yz, xz, xy]: [f64; 6]) -> [f64; 4] {
 }
 
 /// At each depth every measure is the greatest of those of the tensors there, and that of the node beside it.
-fn columns_are_of(below: &Subsurface, pressure: &DMatrix<f64>, depths: [f64; 3], file: &Path) -> Done {
+fn columns_are_of(
+    below: &Subsurface,
+    pressure: &DMatrix<f64>,
+    depths: [f64; 3],
+    file: &Path,
+) -> Done {
     assert_eq!(numbers(file, "body")?, [1.0; 3]);
     assert_eq!(numbers(file, "depth")?, depths);
     for (row, depth) in depths.into_iter().enumerate() {
@@ -174,11 +179,11 @@ fn columns_of_a_coat_are_the_greatest_of_the_tensors() -> Done {
 #[test]
 fn a_coat_of_the_same_material_is_none() -> Done {
     let folder = Scratch::new("stress-coat-none")?;
-    for (name, body) in [
-        ("coated", "--layer 210e9,0.3,2e-4 --base 210e9,0.3"),
-        ("plain", "--material 210e9,0.3"),
-    ] {
-        run(&folder.0, &format!("path --nodes 16 --seed 3 {body} --record {name}.npz --out path -q"))?;
+    for (name, body) in
+        [("coated", "--layer 210e9,0.3,2e-4 --base 210e9,0.3"), ("plain", "--material 210e9,0.3")]
+    {
+        let line = format!("path --nodes 16 --seed 3 {body} --record {name}.npz --out path -q");
+        run(&folder.0, &line)?;
         let line = format!("stress {name}.npz --depth 1e-4 --depth 3e-4 --depth 1e-3 --out {name}");
         run(&folder.0, &line)?;
     }
