@@ -199,7 +199,7 @@ fn laws_are_told() -> Done {
     Ok(())
 }
 
-/// On periodic cells the compliance is that of all waves but the mean, 2/(E*|q|) each: `laws_are_told` of them.
+/// On periodic cells the compliance is the mean of those of all waves, 2/(E*|q|), and of 0 for the uniform one.
 #[test]
 fn laws_of_periodic_cells_are_told() -> Done {
     let folder = Scratch::new("adhesion_periodic")?;

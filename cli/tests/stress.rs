@@ -20,6 +20,10 @@ type Done = Result<(), Box<dyn Error>>;
 /// The measures of the file, in its order.
 const NAMES: [&str; 4] = ["von_mises", "tresca", "greatest_shear", "greatest_tension"];
 
+/// A path of a coat of 0.2 mm on steel.
+const COAT: &str =
+    "path --nodes 16 --layer 400e9,0.25,2e-4 --base steel --record coat.npz --out path -q";
+
 /// Steel against glass: what is printed is what the library finds, for both bodies; tractions on the second are
 /// opposite.
 #[test]
@@ -160,13 +164,11 @@ fn columns_are_the_greatest_of_the_tensors() -> Done {
     columns_are_of(&below, &pressure, [0.0, 3e-4, 2e-3], &file)
 }
 
-/// Two depths in a coat of 0.2 mm and one in what it lies on.
+/// Two depths in the coat and one in the steel below it.
 #[test]
 fn columns_of_a_coat_are_the_greatest_of_the_tensors() -> Done {
     let folder = Scratch::new("stress-coat-columns")?;
-    let coat =
-        "path --nodes 16 --layer 400e9,0.25,2e-4 --base steel --record coat.npz --out path -q";
-    run(&folder.0, coat)?;
+    run(&folder.0, COAT)?;
     run(&folder.0, "stress coat.npz --depth 0 --depth 1e-4 --depth 1e-3 --out seen")?;
     let record = LoadingRecord::read_npz(folder.join("coat.npz"))?;
     let state = *record.states().last().ok_or("no state")?;
@@ -241,9 +243,7 @@ fn stresses_below_one_cell_are_loves() -> Done {
 #[test]
 fn coats_have_stresses() -> Done {
     let folder = Scratch::new("stress-coat")?;
-    let coat =
-        "path --nodes 16 --layer 400e9,0.25,2e-4 --base steel --record coat.npz --out path -q";
-    run(&folder.0, coat)?;
+    run(&folder.0, COAT)?;
     let found = run(&folder.0, "stress coat.npz --json --out seen")?;
     let document: Value = serde_json::from_slice(&found.stdout)?;
     let body = &document["bodies"][0];
