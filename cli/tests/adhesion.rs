@@ -313,8 +313,10 @@ fn records_know_the_states_that_they_have_passed() -> Done {
         ("--mean-pressure 80", &["the record has passed", "80", "no state there"]),
         ("--mean-pressure 200 --memory-budget 1e5", &["budget"]),
     ] {
-        let line = format!("path --resume s.npz --record t.npz {options} --out refused");
-        is_refused(&output(&folder.0, &line)?, words);
+        for way in ["", "--dry-run"] {
+            let line = format!("path --resume s.npz --record t.npz {options} --out refused {way}");
+            is_refused(&output(&folder.0, &line)?, words);
+        }
     }
     assert!(!folder.join("refused/settings.json").exists());
     // Where nobody says where the path ends, it ends with the record.

@@ -146,7 +146,7 @@ fn prepare(options: &Options, is_first: bool) -> Result<(Job, Vec<Named>), Failu
 fn estimate(options: &Options, of: &str) -> Result<(), Failure> {
     let (job, _) = prepare(options, true)?;
     let expected = match job.law() {
-        Some(_) => adhesive::expected(&job, options.unload)?,
+        Some(_) => adhesive::expected(&job, options)?,
         None => Expected::of(&job, options.unload)?,
     };
     match options.json {

@@ -74,6 +74,44 @@ fn save(
         .map_err(|error| Failure::writing(name, error))
 }
 
+/// What a record has of a path already.
+pub(super) struct Begun {
+    reached: Vec<(At, AdhesiveState)>,
+    missed: Vec<At>,
+    /// Why loading has ended, `None` if it goes on.
+    ended_by: Option<&'static str>,
+}
+
+impl Begun {
+    /// Without a record, nothing.
+    ///
+    /// # Errors
+    ///
+    /// A record that has passed a state that is asked for and does not have it, or is beyond where the path is to end.
+    pub(super) fn of(job: &Job, options: &Options) -> Result<Self, Failure> {
+        let (grid, begun) = (job.grid(), states_of(job));
+        let branch = present_loading(begun, options.unload);
+        let ended_by = end_of(branch, job, options)?;
+        let (mut reached, mut missed) = (Vec::new(), Vec::new());
+        for at in job.at() {
+            let target = at.target(grid.nominal_area());
+            match super::reached(branch, (&target, &at.to_string()), &grid)? {
+                Some(state) => reached.push((*at, *state)),
+                None => missed.push(*at),
+            }
+        }
+        // A record that was unloading goes on with that.
+        let is_back = |state: &AdhesiveState| state.direction == Direction::Unloading;
+        let is_turned = options.unload && begun.last().is_some_and(is_back);
+        Ok(Self { reached, missed, ended_by: ended_by.or(is_turned.then_some(OF_RECORD)) })
+    }
+}
+
+/// The states of the record that a path goes on from.
+fn states_of(job: &Job) -> &[AdhesiveState] {
+    job.begun_with_adhesion().map_or(&[], |record| record.states().states())
+}
+
 /// A path as far as it has come, with its files.
 pub(super) struct Course<'a> {
     job: &'a Job,
@@ -91,21 +129,8 @@ impl<'a> Course<'a> {
         options: &Options,
     ) -> Result<Self, Failure> {
         let record = job.record().map(Path::to_path_buf);
-        let begun = job.begun_with_adhesion().map_or(&[][..], |begun| begun.states().states());
-        let (grid, branch) = (job.grid(), present_loading(begun, options.unload));
-        let ended_by = end_of(branch, job, options)?;
-        let (mut reached, mut missed) = (Vec::new(), Vec::new());
-        for at in job.at() {
-            let target = at.target(grid.nominal_area());
-            match super::reached(branch, (&target, &at.to_string()), &grid)? {
-                Some(state) => reached.push((*at, *state)),
-                None => missed.push(*at),
-            }
-        }
-        // A record that was unloading goes on with that.
-        let is_back = |state: &AdhesiveState| state.direction == Direction::Unloading;
-        let is_turned = options.unload && begun.last().is_some_and(is_back);
-        let ended_by = ended_by.or(is_turned.then_some(OF_RECORD));
+        let Begun { reached, missed, ended_by } = Begun::of(job, options)?;
+        let begun = states_of(job);
         let mut lines = Lines::create(&options.out, HEADER)?;
         begun.iter().try_for_each(|state| lines.add(&line(state)))?;
         Ok(Self {
