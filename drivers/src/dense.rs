@@ -186,6 +186,13 @@ impl Dense {
         }
     }
 
+    /// The rate of a node's [own displacement](Self::own_displacement) over that at which the mean gap of a state closes.
+    pub(crate) fn closing_of_own(&self, state: &asperity::ContactState) -> f64 {
+        self.scalars(state)
+            .interfacial
+            .map_or(0.0, |stiffness| stiffness * self.own_displacement(1.0))
+    }
+
     /// The displacement for a unit sum of pressures that is not reported: nothing where the mean displacement means
     /// something.
     pub(crate) fn gauge(&self) -> f64 {

@@ -64,13 +64,8 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let dense = Dense::new(&sample.kernel, sample.surface.matrix())
         .in_gauge_of_paths(sample.kernel.contact_growth());
     let mut tally = Tally::default();
-    same_path(
-        (found.events(), exact.events()),
-        &Bounds::LARGE,
-        |load| dense.uniform_displacement(load),
-        &mut tally,
-    )
-    .map_err(|violation| violation.during(format!("{variant:?}")))?;
+    same_path((found.events(), exact.events()), &Bounds::LARGE, &dense, &mut tally)
+        .map_err(|violation| violation.during(format!("{variant:?}")))?;
     // One state of the factor beside a dense solution of its contact, which takes longer than the path.
     if draw.once_in(2) {
         let (before, next) = exact.events().split_at(draw.whole(0, grid.nodes() - 1));

@@ -150,12 +150,7 @@ impl<'a> Trial<'a> {
         if variant.rule == ContactRule::FirstContact {
             let yields = self.dense.hardness().is_some();
             let bounds = if yields { Bounds::SMALL_YIELDING } else { Bounds::SMALL };
-            same_path(
-                (&whole, expected),
-                &bounds,
-                |load| self.dense.uniform_displacement(load),
-                &mut tally,
-            )?;
+            same_path((&whole, expected), &bounds, &self.dense, &mut tally)?;
         }
         if let Some(error) = failure {
             tally += self.circumstances(variant).judge(&error)?;

@@ -52,7 +52,8 @@
 //!   measured on 128 × 128 nodes none exceeds its estimate. On strips of four rows and on incompressible sheets up to
 //!   three cells thick one to four in a thousand do, 2.2 times at worst. On square cells loads are wrong by some 10⁻⁷
 //!   as a rule and by 10⁻⁵ at worst (on uncorrelated heights 3·10⁻⁵), interfacial stiffnesses by 2·10⁻⁶ and 2·10⁻⁴,
-//!   mean gaps by 10⁻⁶ of the initial one. On cells 10 times as long as wide loads of a periodic half-space are off by
+//!   mean gaps by 10⁻⁶ of the initial one. Interfacial stiffnesses are less exact where few nodes are open, whose gaps
+//!   hardly close: with one of 441 by 2 %. On cells 10 times as long as wide loads of a periodic half-space are off by
 //!   up to 10⁻⁴, and longer ones [are refused](crate::updater::ConjugateGradient::MAX_ASPECT); on a free half-space
 //!   cells may be of any shape.
 //!
