@@ -17,6 +17,8 @@ const MEASURES: [Measure; 3] =
     [Measure::VonMises, Measure::GreatestShear, Measure::GreatestTension];
 /// Components of a symmetric tensor in the order of VTK: xx, yy, zz, xy, yz, xz, by their places in that of Voigt.
 const TENSOR: [usize; 6] = [0, 1, 2, 5, 3, 4];
+/// Most bytes of a file: places in it are signed.
+const MOST_BYTES: u64 = i64::MAX as u64 / 2;
 
 impl Subsurface {
     /// Writes the stresses at `count` depths, 0, `step`, 2 `step` and so on \[m\], as image data of VTK (`.vti`, single
@@ -27,8 +29,8 @@ impl Subsurface {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the step and the count, those of [`at_depth`](Self::at_depth), and
-    /// [`FileError::Io`](crate::FileError::Io).
+    /// [`Error::NotPositive`] for the step and the count, [`Error::OutOfRange`] for more depths than any file holds,
+    /// those of [`at_depth`](Self::at_depth), and [`FileError::Io`](crate::FileError::Io).
     pub fn write_volume(
         &self,
         pressure: &DMatrix<f64>,
@@ -38,6 +40,9 @@ impl Subsurface {
     ) -> Result<(), Error> {
         let step = Error::require_positive("distance of depths", step)?;
         Error::require_positive("number of depths", count as f64)?;
+        let a_depth = bytes(self.grid().nodes(), MEASURES.len() + TENSOR.len());
+        let fits = count as u64 <= MOST_BYTES / a_depth;
+        Error::require("number of depths", count as f64, fits, "no more than any file holds")?;
         let mut refused = None;
         let written = write_whole(file, |output| {
             let volume = Volume::begin(output, &self.grid(), (step, count))?;
@@ -81,7 +86,7 @@ impl Volume {
         let nodes = grid.nodes();
         let names = MEASURES.map(|measure| (measure.name(), 1)).into_iter();
         let names: Vec<(&str, usize)> = names.chain([("stress", TENSOR.len())]).collect();
-        let bytes = |components: usize| (nodes * count * components * size_of::<f32>()) as u64;
+        let bytes = |components: usize| count as u64 * bytes(nodes, components);
         let mut offset = 0;
         let mut arrays = Vec::new();
         let mut described = String::new();
@@ -131,8 +136,8 @@ impl Volume {
         let maps = MEASURES.map(|measure| field.map(measure));
         let components = field.components();
         for (place, &(first, width)) in self.arrays.iter().enumerate() {
-            let bytes = (k * self.nodes * width * size_of::<f32>()) as u64;
-            output.seek(SeekFrom::Start(first + bytes))?;
+            let before = k as u64 * bytes(self.nodes, width);
+            output.seek(SeekFrom::Start(first + before))?;
             for node in 0..self.nodes {
                 match maps.get(place) {
                     Some(map) => put(output, map.as_slice()[node])?,
@@ -146,6 +151,11 @@ impl Volume {
         }
         Ok(())
     }
+}
+
+/// Those of so many components at one depth.
+fn bytes(nodes: usize, components: usize) -> u64 {
+    (nodes * components * size_of::<f32>()) as u64
 }
 
 fn put(output: &mut BufWriter<File>, value: f64) -> std::io::Result<()> {

@@ -132,7 +132,7 @@ fn a_volume_has_all_depths() -> Result<(), Error> {
         }
     }
     assert!(bytes.ends_with(b"\n  </AppendedData>\n</VTKFile>\n"));
-    for (step, count) in [(0.0, 3), (0.5, 0), (f64::NAN, 1)] {
+    for (step, count) in [(0.0, 3), (0.5, 0), (f64::NAN, 1), (0.5, usize::MAX)] {
         assert!(body.write_volume(&pressure, (step, count), &file, |_| ()).is_err());
     }
     std::fs::remove_file(&file).unwrap();
