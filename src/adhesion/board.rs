@@ -28,6 +28,17 @@ pub(super) struct Row {
     pub(super) gap: f64,
 }
 
+/// A node whose traction is held within a jump.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hold {
+    pub(super) node: usize,
+    /// \[Pa\].
+    pub(super) pull: f64,
+    /// Which way the pull goes to the law: 1, it grows, of a gap that was closing, and −1 of one that was opening. Where
+    /// pulls may open gaps this need not be the way of the branch.
+    pub(super) way: f64,
+}
+
 /// Something that happens to a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Change {
@@ -55,12 +66,10 @@ pub(super) struct Board {
     along_approach: Option<Vec<f64>>,
     /// Sums of all pressures and of all gaps.
     pub(super) sums: [f64; 2],
-    /// Nodes whose traction is held, those that are carried first.
-    pub(super) held: Vec<(usize, f64)>,
+    /// Those that are carried first.
+    pub(super) held: Vec<Hold>,
     /// The row whose pull is the parameter, if one is, and whether that grows, 1, or falls, −1.
     carried: Option<(usize, f64)>,
-    /// 1 or −1: loading or unloading.
-    sign: f64,
     /// Nodes in contact, on the whole grid.
     pub(super) contact_nodes: usize,
     /// Soft nodes that are not watched.
@@ -73,14 +82,13 @@ pub(super) struct Board {
 /// What a window begins with.
 pub(super) struct Beginning {
     pub(super) law: CohesiveLaw,
-    pub(super) sign: f64,
     pub(super) rows: Vec<Row>,
     pub(super) answers: Answers,
     /// By row: how fast its quantity that answers grows along the parameter.
     pub(super) rates: Vec<f64>,
     /// Sums of all pressures and of all gaps, with their rates.
     pub(super) sums: [[f64; 2]; 2],
-    pub(super) held: Vec<(usize, f64)>,
+    pub(super) held: Vec<Hold>,
     pub(super) is_carried: bool,
     pub(super) contact_nodes: usize,
     /// Soft nodes that are not watched.
@@ -99,7 +107,6 @@ impl Board {
             sums: begin.sums.map(|[value, _]| value),
             held: begin.held,
             carried: None,
-            sign: begin.sign,
             contact_nodes: begin.contact_nodes,
             other_soft: begin.other_soft,
             is_worn: false,
@@ -111,10 +118,10 @@ impl Board {
 
     /// The row of the first node that is held, and which way its pull goes to its law.
     fn first_held(&self) -> Option<(usize, f64)> {
-        let &(node, _) = self.held.first()?;
+        let &Hold { node, way, .. } = self.held.first()?;
         let place = self.rows.iter().position(|row| row.node == node)?;
         let Row { pressure, gap, .. } = self.rows[place];
-        Some((place, self.law.direction([pressure, gap], self.sign)))
+        Some((place, self.law.direction([pressure, gap], way)))
     }
 
     fn size(&self) -> usize {
@@ -215,8 +222,8 @@ impl Board {
         }
         let rates = self.sum_rates();
         self.sums.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += step * rate);
-        if let (Some((place, _)), Some((_, pull))) = (self.carried, self.held.first_mut()) {
-            *pull = -self.rows[place].pressure;
+        if let (Some((place, _)), Some(hold)) = (self.carried, self.held.first_mut()) {
+            hold.pull = -self.rows[place].pressure;
         }
         lost
     }
@@ -241,20 +248,20 @@ impl Board {
 
     /// Holds the traction of a row: at an end of the law that it ties with, or else what rounding made of it would grow
     /// from each node that turns unstable there to the next.
-    fn hold(&mut self, place: usize, pull: f64) {
+    fn hold(&mut self, place: usize, pull: f64, way: f64) {
         let stress = self.law.stress();
         let end = [0.0, stress].into_iter().find(|end| (pull - end).abs() <= LAG * stress);
         let pull = end.unwrap_or(pull);
         self.change(place, NodeState::Held);
         self.rows[place].pressure = -pull;
-        self.held.push((self.rows[place].node, pull));
+        self.held.push(Hold { node: self.rows[place].node, pull, way });
     }
 
     fn note_pivot(&mut self, part: f64) {
         self.is_worn |= part.abs() < SMALL_PIVOT;
     }
 
-    /// Puts a row on the slope, or holds its traction if it is not stable there.
+    /// Puts a row on the slope, from the end of the law with this pull, or holds its traction if it is not stable there.
     fn soften_or_hold(&mut self, place: usize, pull: f64) {
         let softness = self.softness(place);
         if softness < -LEAST_PIVOT {
@@ -262,7 +269,7 @@ impl Board {
             self.soften(place);
             self.change(place, NodeState::Soft);
         } else {
-            self.hold(place, pull);
+            self.hold(place, pull, if pull > 0.0 { -1.0 } else { 1.0 });
         }
     }
 
@@ -295,7 +302,7 @@ impl Board {
             NodeState::Cohesive => self.touch(place),
             NodeState::Held => {
                 let node = self.rows[place].node;
-                self.held.retain(|&(held, _)| held != node);
+                self.held.retain(|hold| hold.node != node);
                 self.carried = self.carried.filter(|&(carried, _)| carried != place);
                 self.touch(place);
             }
@@ -322,7 +329,7 @@ impl Board {
                 break;
             };
             self.harden(row);
-            self.hold(row, -self.rows[row].pressure);
+            self.hold(row, -self.rows[row].pressure, -1.0);
             part = self.entry(place, place) * self.compliance();
         }
         self.note_pivot(part);

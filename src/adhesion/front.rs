@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::answers::Answers;
+use super::board::Hold;
 use super::law::CohesiveLaw;
 use super::rows::{Rows, Sources};
 use super::soft::Soft;
@@ -19,14 +20,14 @@ pub(super) struct Front {
     pub(super) nodes: Vec<NodeState>,
     /// Approach \[m\], in the gauge of the kernel.
     pub(super) approach: f64,
-    /// Within a jump the nodes whose traction is held, and their pull \[Pa\], those first that are carried first.
-    pub(super) held: Vec<(usize, f64)>,
+    /// Within a jump the nodes whose traction is held, those first that are carried first.
+    pub(super) held: Vec<Hold>,
 }
 
 impl Front {
     /// What the path goes along: the approach, or within a jump the pull of a node.
     pub(super) fn parameter(&self) -> Parameter {
-        self.held.first().map_or(Parameter::Approach, |&(node, _)| Parameter::Pull(node))
+        self.held.first().map_or(Parameter::Approach, |hold| Parameter::Pull(hold.node))
     }
 
     /// How many nodes are in a state.
@@ -463,13 +464,14 @@ impl Body {
                 *p = -self.law.stress();
             }
         }
-        for &(node, pull) in &front.held {
-            pressure[0][node] = -pull;
+        for hold in &front.held {
+            pressure[0][hold.node] = -hold.pull;
         }
-        let along = match front.parameter() {
-            Parameter::Approach => sign,
-            Parameter::Pull(node) => {
-                pressure[1][node] = -sign;
+        let carried = front.held.first();
+        let along = match carried {
+            None => sign,
+            Some(hold) => {
+                pressure[1][hold.node] = -hold.way;
                 0.0
             }
         };
@@ -501,8 +503,8 @@ impl Body {
         }
         let mut field = Field { pressure, gap: base };
         self.settle(front, &mut field)?;
-        if let Parameter::Pull(node) = front.parameter()
-            && self.law.direction([field.pressure[0][node], field.gap[0][node]], sign) != sign
+        if let Some(&Hold { node, way, .. }) = carried
+            && self.law.direction([field.pressure[0][node], field.gap[0][node]], way) != way
         {
             let [[_, dp], [_, dgap]] = [&mut field.pressure, &mut field.gap];
             dp.iter_mut().chain(dgap).for_each(|rate| *rate = -*rate);

@@ -12,7 +12,7 @@ const BORDER: f64 = 0.5;
 /// law is refused.
 const WARNED: f64 = 0.5;
 const GREATEST: f64 = 0.8;
-/// How far beyond its law a traction that is held has to be to go against the branch, relative to the stress: rounding
+/// How far beyond its law a traction that is held has to be to go against its gap, relative to the stress: rounding
 /// is far less, even where a state is nearly unstable.
 const BEYOND: f64 = 1e-6;
 
@@ -237,12 +237,11 @@ impl CohesiveLaw {
         (self.slope() * (self.range - gap)).clamp(0.0, self.stress)
     }
 
-    /// Which way a pull that is held goes to the law: 1 where it grows and −1 where it falls. It goes with the branch,
-    /// of this sign, unless what happened meanwhile has left it beyond the law: a node that has parted while others
-    /// close.
-    pub(super) fn direction(&self, [pressure, gap]: [f64; 2], sign: f64) -> f64 {
-        let lag = sign * (self.pull(gap) + pressure);
-        if lag < -BEYOND * self.stress { -sign } else { sign }
+    /// Which way a pull that is held goes to the law: 1 where it grows and −1 where it falls. It goes the way of its gap
+    /// unless what happened meanwhile has left it beyond the law: a node that has parted while others close.
+    pub(super) fn direction(&self, [pressure, gap]: [f64; 2], way: f64) -> f64 {
+        let lag = way * (self.pull(gap) + pressure);
+        if lag < -BEYOND * self.stress { -way } else { way }
     }
 
     /// The energy φ of a gap \[J/m²\], 0 out of range and −w at 0: its derivative is the pull.

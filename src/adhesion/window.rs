@@ -259,7 +259,6 @@ impl<'a> Play<'a> {
         let soft = begun.iter().filter(|row| row.state == NodeState::Soft).count();
         let board = Board::new(Beginning {
             law: body.law,
-            sign: view.direction.sign(),
             rows: begun.clone(),
             answers,
             rates,
