@@ -14,7 +14,9 @@ use crate::{Error, Grid};
 
 /// By how much a node may be beyond its law at the end of a window, in pressures relative to the stress, in gaps to the
 /// range: ten times the lag with which a node that is carried is put on its law, or held at an end of it, which others
-/// answer to. Of gaps there is rounding of the greatest length besides. Soft nodes near an instability amplify both.
+/// answer to. There is rounding of the greatest length besides, and in contact of the pressure that displaces a node by
+/// that, which may be 10⁷ times the stress where stiff bodies stick a little. Soft nodes near an instability amplify all
+/// of it.
 const SLACK: f64 = 10.0 * LAG;
 const ROUNDING: f64 = 1e-12;
 /// How often a window is tried, with more nodes or with fewer events each time.
@@ -127,9 +129,13 @@ pub(super) fn follow(
 fn beyond(body: &Body, front: &Front, field: &Field) -> Vec<(usize, f64)> {
     let law = &body.law;
     let length = body.problem.greatest_gap() + front.approach.abs();
-    let slack = (SLACK + ROUNDING * length / law.range()) / body.least_pivot();
+    let slack = |unit: f64| (SLACK + ROUNDING * length / unit) / body.least_pivot();
+    let of_gap = slack(law.range());
+    // What the stress displaces a node by that it acts on.
+    let of_pressure = slack(law.resolution() * (law.range() - law.flat_range()));
     let nodes = front.nodes.iter().enumerate().filter_map(|(node, &state)| {
         let value = excess(law, state, [field.pressure[0][node], field.gap[0][node]]);
+        let slack = if state == NodeState::Contact { of_pressure } else { of_gap };
         (value.is_nan() || value > slack).then_some((node, value))
     });
     nodes.collect()

@@ -70,7 +70,7 @@ pub enum AdhesionError {
 
     /// Nodes beyond those that were expected change at once, however few events are followed together.
     #[error(
-        "at approach {approach} m node ({ix}, {iy}) is beyond its law by {value} of the range of adhesion after one \
+        "at approach {approach} m node ({ix}, {iy}) is beyond its law by {value} of its range or stress after one \
          event: the kernel is too ill-conditioned, or breaks the growth of contact that it promises"
     )]
     NotOnLaw {
@@ -80,7 +80,7 @@ pub enum AdhesionError {
         iy: usize,
         /// Approach, in the gauge of the kernel.
         approach: f64,
-        /// By how much, relative to the range.
+        /// By how much: a gap relative to the range, a pressure in contact to the stress.
         value: f64,
     },
 

@@ -247,6 +247,32 @@ fn little_adhesion_is_none() {
     assert_eq!(last.contact.contact_nodes, elastic.contact.contact_nodes);
 }
 
+/// The same of stiff bodies that stick a little over a long range: pressures are up to 10¹¹ times what adhesion pulls
+/// with, and known to no more than rounding. The branches come to their ends, and energies balance.
+#[test]
+fn little_adhesion_over_a_long_range_is_none() {
+    let (surface, kernel) = (surface(), kernel());
+    let elastic = LoadingSolver::builder(&surface, &kernel).max_approach(0.04).build().unwrap();
+    let elastic = elastic.map(|state| state.unwrap()).last().unwrap().contact;
+    for work in [1e-6, 1e-8, 1e-10, 1e-12, 1e-14] {
+        for law in [Adhesion::work(work).range(0.05), Adhesion::maugis(work, 0.6 * work / 0.02)] {
+            let builder = AdhesivePath::builder(&surface, &kernel, law);
+            let mut path = builder.until(ContactTarget::Approach(0.04)).build().unwrap();
+            let last = run(&mut path).last().unwrap().contact;
+            let stress = path.law().stress();
+            // What pulls adds as much contact, and its pull, as a load of that size.
+            assert!((last.load - elastic.load).abs() < 10.0 * stress + 1e-12 * elastic.load);
+            let nodes = elastic.contact_nodes.abs_diff(last.contact_nodes);
+            assert!(nodes <= if work > 1e-7 { 2 } else { 0 }, "{work}: {nodes}");
+            path.unload().unwrap();
+            let off = *run(&mut path).last().unwrap();
+            assert_eq!(path.end(), Some(AdhesiveEnd::NoMoreEvents));
+            assert_eq!((off.contact.contact_nodes, off.contact.load), (0, 0.0));
+            assert!((off.work - off.dissipated).abs() < 1e-12 * elastic.energy, "{work}");
+        }
+    }
+}
+
 /// Without any adhesion the states are those of the elastic path bit for bit, on the way there, back and there again.
 #[test]
 fn no_adhesion_is_the_elastic_path() {
