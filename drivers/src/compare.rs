@@ -52,8 +52,8 @@ impl Bounds {
     pub(crate) const SMALL_YIELDING: Self = Self { order: FAR_OFF, ..Self::SMALL };
     /// Of larger ones on cells up to 100 times as long as wide: some three times the worst of 3000 paths, and for the
     /// interfacial stiffness twice the worst of 17 000, on 15 × 24 nodes where a window is an eighth of the path. With 4
-    /// nodes of 308 open, closing at 1.6e-3 of the approach in the mean, that was off by 3.7e-5 of the approach; with 1 of 441,
-    /// periodic, by 3.0e-5 of a node's own displacement.
+    /// nodes of 308 open, closing at 1.6e-3 of the approach in the mean, that was off by 3.7e-5 of the approach; with 1
+    /// of 441, periodic, by 3.0e-5 of a node's own displacement.
     pub(crate) const LARGE: Self = Self {
         load: 1e-3,
         stiffness: 1e-3,
@@ -192,8 +192,8 @@ pub(crate) fn same_path(
             ),
         ]
         .to_vec();
-        // The mean closing rate over that of the approach is the ratio of both stiffnesses. Where a mean displacement is
-        // arbitrary, no rate of the approach is: the closing rate is beside that of a node's own displacement.
+        // The mean closing rate over that of the approach is the ratio of both stiffnesses. Where the mean displacement
+        // is arbitrary, a node's own displacement takes the place of the approach.
         let exact = (expected.contact.interfacial_stiffness, expected.contact.contact_stiffness);
         let of_closing = match exact {
             (Some(interfacial), Some(contact)) if contact > 0.0 => {

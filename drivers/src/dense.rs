@@ -186,7 +186,7 @@ impl Dense {
         }
     }
 
-    /// The rate of a node's [own displacement](Self::own_displacement) over that at which the mean gap of a state closes.
+    /// The rate of a node's [own displacement](Self::own_displacement) over that at which the mean gap closes.
     pub(crate) fn closing_of_own(&self, state: &asperity::ContactState) -> f64 {
         self.scalars(state)
             .interfacial

@@ -34,8 +34,8 @@ pub(super) struct Hold {
     pub(super) node: usize,
     /// \[Pa\].
     pub(super) pull: f64,
-    /// Which way the pull goes to the law: 1, it grows, of a gap that was closing, and −1 of one that was opening. Where
-    /// pulls may open gaps this need not be the way of the branch.
+    /// Which way the pull goes to the law: 1, it grows, where the gap was closing, and −1 where it was opening. If pulls
+    /// may open gaps, this need not be the way of the branch.
     pub(super) way: f64,
 }
 
@@ -66,7 +66,7 @@ pub(super) struct Board {
     along_approach: Option<Vec<f64>>,
     /// Sums of all pressures and of all gaps.
     pub(super) sums: [f64; 2],
-    /// Those that are carried first.
+    /// Nodes whose traction is held, those that are carried first.
     pub(super) held: Vec<Hold>,
     /// The row whose pull is the parameter, if one is, and whether that grows, 1, or falls, −1.
     carried: Option<(usize, f64)>,
@@ -89,7 +89,6 @@ pub(super) struct Beginning {
     /// Sums of all pressures and of all gaps, with their rates.
     pub(super) sums: [[f64; 2]; 2],
     pub(super) held: Vec<Hold>,
-    pub(super) is_carried: bool,
     pub(super) contact_nodes: usize,
     /// Soft nodes that are not watched.
     pub(super) other_soft: usize,
@@ -112,7 +111,7 @@ impl Board {
             is_worn: false,
             changes: Vec::new(),
         };
-        board.carried = board.first_held().filter(|_| begin.is_carried);
+        board.carried = board.first_held();
         board
     }
 
@@ -261,7 +260,7 @@ impl Board {
         self.is_worn |= part.abs() < SMALL_PIVOT;
     }
 
-    /// Puts a row on the slope, from the end of the law with this pull, or holds its traction if it is not stable there.
+    /// Puts a row on the slope, from the end with this pull, or holds its traction if it is not stable there.
     fn soften_or_hold(&mut self, place: usize, pull: f64) {
         let softness = self.softness(place);
         if softness < -LEAST_PIVOT {

@@ -20,28 +20,16 @@ pub(super) struct Front {
     pub(super) nodes: Vec<NodeState>,
     /// Approach \[m\], in the gauge of the kernel.
     pub(super) approach: f64,
-    /// Within a jump the nodes whose traction is held, those first that are carried first.
+    /// Within a jump the nodes whose traction is held, those first that are carried first. The path goes along the pull
+    /// of the first one at a fixed approach, and along the approach where there is none.
     pub(super) held: Vec<Hold>,
 }
 
 impl Front {
-    /// What the path goes along: the approach, or within a jump the pull of a node.
-    pub(super) fn parameter(&self) -> Parameter {
-        self.held.first().map_or(Parameter::Approach, |hold| Parameter::Pull(hold.node))
-    }
-
     /// How many nodes are in a state.
     pub(super) fn count(&self, state: NodeState) -> usize {
         self.nodes.iter().filter(|&&other| other == state).count()
     }
-}
-
-/// What grows or falls between two events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Parameter {
-    Approach,
-    /// The pull of the node whose traction is held, at a fixed approach.
-    Pull(usize),
 }
 
 /// Pressures and gaps of all nodes, and their rates along the parameter of a path, in its direction.

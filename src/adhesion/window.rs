@@ -1,7 +1,7 @@
 //! The events of a window: along one parameter, among the nodes that are watched.
 
 use super::board::{Beginning, Board, Change, LAG, Left, Row};
-use super::front::{Body, Field, Front, Parameter};
+use super::front::{Body, Field, Front};
 use super::law::CohesiveLaw;
 use super::moment::{Moment, Totals};
 use super::rows::Rows;
@@ -171,8 +171,8 @@ struct Play<'a> {
     rows: Rows,
     /// The rows as they began.
     begun: Vec<Row>,
-    /// What it has begun along.
-    parameter: Parameter,
+    /// Whether it has begun along the pull of a node, and not along the approach.
+    is_in_jump: bool,
     grid: Grid,
     approach: f64,
     /// Until then nothing happens to a node that is not watched, as far as its rate at the beginning tells.
@@ -261,7 +261,6 @@ impl<'a> Play<'a> {
         });
         let rates = rates.collect();
         let (answers, rows) = body.rows(front, nodes, known)?;
-        let parameter = front.parameter();
         let soft = begun.iter().filter(|row| row.state == NodeState::Soft).count();
         let board = Board::new(Beginning {
             law: body.law,
@@ -270,7 +269,6 @@ impl<'a> Play<'a> {
             rates,
             sums: field.sums(),
             held: front.held.clone(),
-            is_carried: parameter != Parameter::Approach,
             contact_nodes: front.count(NodeState::Contact),
             other_soft: body.soft().len() - soft,
         });
@@ -279,7 +277,7 @@ impl<'a> Play<'a> {
             board,
             rows,
             begun,
-            parameter,
+            is_in_jump: !front.held.is_empty(),
             grid: body.problem.grid(),
             approach: front.approach,
             horizon,
@@ -356,7 +354,7 @@ impl<'a> Play<'a> {
                 return Ok(Outcome::Led(ended));
             }
             // Along the pull of a row, soft nodes change by what is given of that row and by nothing else.
-            let alone = if self.parameter == Parameter::Approach { self.time } else { 0.0 };
+            let alone = if self.is_in_jump { 0.0 } else { self.time };
             let rows = self.board.rows.iter().map(|row| (row.node, [row.pressure, row.gap]));
             let rows: Vec<_> = rows.collect();
             let found = body.preview(&ended, (field, alone), &self.rows, (&rows, self.given()))?;
@@ -443,7 +441,7 @@ impl<'a> Play<'a> {
             self.board.carry_next();
             return true;
         }
-        if self.parameter != Parameter::Approach {
+        if self.is_in_jump {
             // Rates along the approach are not known.
             return false;
         }
@@ -541,7 +539,7 @@ impl<'a> Play<'a> {
         let next = self.board.next();
         let event = next.map_or(f64::INFINITY, |(time, _)| time);
         let step = event.min(carry.corner).min(carry.law).min(carry.end);
-        let is_beyond = self.parameter != Parameter::Approach && self.time + step > self.end;
+        let is_beyond = self.is_in_jump && self.time + step > self.end;
         let is_enough = self.is_enough(most, next);
         if step == f64::INFINITY || self.events > 0 && (is_beyond || is_enough) {
             return false;
@@ -574,7 +572,7 @@ impl<'a> Play<'a> {
         let [after, _] = self.board.sums;
         self.has_moved |= step > 0.0;
         let carries = self.board.carries();
-        if carries != (self.parameter == Parameter::Approach) {
+        if carries == self.is_in_jump {
             self.time += step;
         }
         if carries {

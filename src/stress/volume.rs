@@ -153,7 +153,7 @@ impl Volume {
     }
 }
 
-/// Those of so many components at one depth.
+/// Bytes of so many components at one depth.
 fn bytes(nodes: usize, components: usize) -> u64 {
     (nodes * components * size_of::<f32>()) as u64
 }
