@@ -1,11 +1,11 @@
-//! Pressures or gaps of nodes as functions of what is given of each, with a pivot where that changes.
+//! Pressures or gaps of nodes as functions of what is given of each, with a change of rank one where that changes.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::parallel::{self, vectorized};
 
-/// Pivots that are subtracted from the whole matrix at a time.
+/// Products that are subtracted from the whole matrix at a time.
 const BLOCK: usize = 32;
 /// Columns that a thread changes at a time.
 const TILE: usize = 144;
@@ -15,9 +15,10 @@ const PARALLEL: usize = 400;
 /// The matrix T of how each of some nodes answers to what is given of the others, with two more rows, of sums.
 ///
 /// Of every node one of two quantities is given and the other answers. [Exchanging](Self::pivot) the two of a node s is
-/// a pivot: `T_ij`, `i, j ≠ s`, loses `T_is T_sj / T_ss`, a column times a row. Columns and rows are kept, and
-/// subtracted from the matrix a block at a time. A row follows from its column: T is symmetric but for the sign between
-/// a node that answers with its pressure and one that does not.
+/// a pivot: `T_ij`, `i, j ≠ s`, loses `T_is T_sj / T_ss`, a column times a row. [Letting](Self::feed_back) the pressure
+/// of a node follow its gap adds a multiple of `T_is T_sj` to all. Columns and rows are kept, and subtracted from the
+/// matrix a block at a time. A row follows from its column: T is symmetric but for the sign between a node that answers
+/// with its pressure and one that does not.
 #[derive(Debug, Clone)]
 pub(super) struct Answers {
     size: usize,
@@ -25,7 +26,7 @@ pub(super) struct Answers {
     matrix: Vec<f64>,
     /// Whether the pressure answers.
     with_pressure: Vec<bool>,
-    /// The columns and rows of pivots that are still to be subtracted.
+    /// Columns and rows whose products are still to be subtracted.
     columns: Vec<f64>,
     rows: Vec<f64>,
 }
@@ -41,15 +42,15 @@ impl Answers {
         self.size + 2
     }
 
-    /// Pivots that are still to be subtracted: column and row of each.
-    fn pivots(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+    /// Column and row of each product that is still to be subtracted.
+    fn products(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         let columns = self.columns.chunks_exact(self.height());
         columns.zip(self.rows.chunks_exact(self.size.max(1)))
     }
 
     /// `T_ij`: how the node of a row answers to what is given of that of a column.
     pub(super) fn entry(&self, row: usize, column: usize) -> f64 {
-        let products: f64 = self.pivots().map(|(c, r)| c[row] * r[column]).sum();
+        let products: f64 = self.products().map(|(c, r)| c[row] * r[column]).sum();
         self.matrix[row + self.height() * column] - products
     }
 
@@ -60,7 +61,7 @@ impl Answers {
         vectorized(
             #[inline(always)]
             || {
-                for (c, r) in self.pivots() {
+                for (c, r) in self.products() {
                     let factor = r[column];
                     if factor != 0.0 {
                         values.iter_mut().zip(c).for_each(|(value, c)| *value -= factor * c);
@@ -71,10 +72,27 @@ impl Answers {
         values
     }
 
-    /// Adds to how a node answers to itself.
-    pub(super) fn shift(&mut self, place: usize, by: f64) {
-        let height = self.height();
-        self.matrix[place + height * place] += by;
+    /// The row of a node whose column this is.
+    fn row(&self, place: usize, column: &[f64]) -> Vec<f64> {
+        let own = self.with_pressure[place];
+        let values = column.iter().zip(&self.with_pressure);
+        values.map(|(value, answers)| if *answers == own { *value } else { -value }).collect()
+    }
+
+    /// Lets the pressure of a node whose gap answers grow by `stiffness` times that gap besides what is given of it, in
+    /// the matrix and in some more columns: with `f = stiffness / (1 − stiffness T_ss)`, `T_ij` gains `f T_is T_sj`. The
+    /// negative stiffness takes that back.
+    pub(super) fn feed_back<'a>(
+        &mut self,
+        place: usize,
+        stiffness: f64,
+        others: impl IntoIterator<Item = &'a mut Vec<f64>>,
+    ) {
+        let mut column = self.column(place);
+        let row = self.row(place, &column);
+        let factor = -stiffness / (1.0 - stiffness * column[place]);
+        column.iter_mut().for_each(|value| *value *= factor);
+        self.push(column, row, others.into_iter().map(|other| (other[place], other)));
     }
 
     /// Exchanges what is given of a node and what answers, in the matrix and in some more columns.
@@ -85,35 +103,39 @@ impl Answers {
     ) {
         let (size, height) = (self.size, self.height());
         let mut column = self.column(place);
-        let own = self.with_pressure[place];
-        let mut row: Vec<f64> = column[..size]
-            .iter()
-            .zip(&self.with_pressure)
-            .map(|(value, answers)| if *answers == own { *value } else { -value })
-            .collect();
+        let mut row = self.row(place, &column);
         let inverse = column[place].recip();
         column.iter_mut().for_each(|value| *value *= inverse);
         (column[place], row[place]) = (inverse, -1.0);
-        for other in others {
-            let factor = other[place];
-            other[place] = 0.0;
-            other.iter_mut().zip(&column).for_each(|(value, c)| *value -= factor * c);
-        }
-        // The new row and column replace the old ones, in the matrix and in the pivots that are still to be subtracted.
+        // The new row and column replace the old ones, in the matrix and in the products that are still to be subtracted.
         self.matrix[height * place..height * (place + 1)].fill(0.0);
         self.matrix[place..].iter_mut().step_by(height).take(size).for_each(|value| *value = 0.0);
         for (values, count) in [(&mut self.columns, height), (&mut self.rows, size)] {
             values.chunks_exact_mut(count).for_each(|values| values[place] = 0.0);
         }
+        self.with_pressure[place] = !self.with_pressure[place];
+        let others = others.into_iter().map(|other| (std::mem::take(&mut other[place]), other));
+        self.push(column, row, others);
+    }
+
+    /// Subtracts a column times a row, and from some more columns the column times what they have there.
+    fn push<'a>(
+        &mut self,
+        mut column: Vec<f64>,
+        mut row: Vec<f64>,
+        others: impl Iterator<Item = (f64, &'a mut Vec<f64>)>,
+    ) {
+        for (factor, other) in others {
+            other.iter_mut().zip(&column).for_each(|(value, c)| *value -= factor * c);
+        }
         self.columns.append(&mut column);
         self.rows.append(&mut row);
-        self.with_pressure[place] = !own;
-        if self.rows.len() == BLOCK * size {
+        if self.rows.len() == BLOCK * self.size {
             self.subtract();
         }
     }
 
-    /// Subtracts all pivots from the matrix.
+    /// Subtracts all products from the matrix.
     fn subtract(&mut self) {
         let (size, height) = (self.size, self.height());
         let count = self.rows.len() / size.max(1);
@@ -157,8 +179,8 @@ mod tests {
         }
     }
 
-    /// More than two blocks of pivots, back and forth, and one more column: entries, columns and sums stay those of the
-    /// textbook's.
+    /// More than two blocks of pivots, back and forth, with pressures that follow their gaps in between, and one more
+    /// column: entries, columns and sums stay those of the textbook's.
     #[test]
     fn exchanges_are_those_of_the_whole_matrix() {
         for size in [1_usize, 7, 40] {
@@ -174,16 +196,24 @@ mod tests {
             let mut with_other = other.clone();
             for step in 0..80 {
                 let place = (step * 29 + 5) % size;
-                let pivot = rows[place][place];
-                let factor = with_other[place] / pivot;
-                for (i, value) in with_other.iter_mut().enumerate() {
-                    *value = if i == place { -factor } else { *value - factor * rows[i][place] };
-                }
-                exchange(&mut rows, place);
+                let mut exchange = || {
+                    let factor = with_other[place] / rows[place][place];
+                    for (i, value) in with_other.iter_mut().enumerate() {
+                        *value =
+                            if i == place { -factor } else { *value - factor * rows[i][place] };
+                    }
+                    exchange(&mut rows, place);
+                    rows[place][place]
+                };
+                exchange();
                 answers.pivot(place, [&mut other]);
                 if step % 7 == 3 {
-                    rows[place][place] += 0.5;
-                    answers.shift(place, 0.5);
+                    // As a pressure the node obeys its law with the stiffness off its diagonal.
+                    let stiffness = if step % 2 == 0 { 0.005 } else { -0.005 };
+                    exchange();
+                    rows[place][place] -= stiffness;
+                    exchange();
+                    answers.feed_back(place, stiffness, [&mut other]);
                 }
                 for j in 0..size {
                     let column = answers.column(j);

@@ -4,7 +4,7 @@ use super::answers::Answers;
 use super::law::CohesiveLaw;
 use super::state::NodeState;
 
-/// Pivots below this part of a compliance count as unstable.
+/// Pivots below this part of what a node alone has count as unstable.
 const LEAST_PIVOT: f64 = 1e-10;
 /// A window ends behind a pivot below this part: what it made of the matrix has lost three digits, and energies are to
 /// be known to 1e-12.
@@ -49,11 +49,10 @@ pub(crate) struct Change {
 
 /// Pressures and gaps of watched nodes along a parameter, with the matrix of how each answers to the others.
 ///
-/// Of every node one of two quantities is given and the other answers. Where its gap is 0 the pressure answers; on the
-/// slope of the law it does too, and gap − p/k = h₂ is given; elsewhere the gap answers to a pressure that is given. A
-/// node that changes from one kind to another is a pivot of the matrix. That of a node that touches is positive, and
-/// that of one that becomes soft, T_ss − 1/k, is negative in a stable state: it is quasi-definite as that of a path
-/// with a hardness, but its nodes also go back. Soft nodes that are not watched answer all the time.
+/// Of every node one of two quantities is given and the other answers. Where its gap is 0 the pressure answers,
+/// elsewhere the gap, to a pressure that is given; on the slope of the law, p = k (gap − h₂), −k h₂ is given of the
+/// pressure. A node that touches or parts is a pivot of the matrix, positive in a stable state; so is 1 − k T_ss where
+/// one becomes soft. Soft nodes that are not watched answer all the time.
 #[derive(Debug, Clone)]
 pub(super) struct Board {
     law: CohesiveLaw,
@@ -131,10 +130,6 @@ impl Board {
         self.answers.entry(row, column)
     }
 
-    fn compliance(&self) -> f64 {
-        self.law.slope().recip()
-    }
-
     /// Exchanges what is given of a node and what answers.
     fn pivot(&mut self, place: usize) {
         let rates = [&mut self.along].into_iter().chain(self.along_approach.as_mut());
@@ -143,19 +138,22 @@ impl Board {
 
     /// Puts a node whose pressure is given on the slope of the law.
     fn soften(&mut self, place: usize) {
-        self.answers.shift(place, -self.compliance());
-        self.pivot(place);
+        self.feed_back(place, self.law.slope());
     }
 
     /// Takes it off the slope.
     fn harden(&mut self, place: usize) {
-        self.pivot(place);
-        self.answers.shift(place, self.compliance());
+        self.feed_back(place, -self.law.slope());
     }
 
-    /// The pivot with which a node whose pressure is given would be soft, over 1/k: negative where that is stable.
-    fn softness(&self, place: usize) -> f64 {
-        self.entry(place, place) / self.compliance() - 1.0
+    fn feed_back(&mut self, place: usize, stiffness: f64) {
+        let rates = [&mut self.along].into_iter().chain(self.along_approach.as_mut());
+        self.answers.feed_back(place, stiffness, rates);
+    }
+
+    /// 1 − k T_ss of a node whose pressure is given: positive if it would be stable on the slope.
+    fn stability(&self, place: usize) -> f64 {
+        1.0 - self.law.slope() * self.entry(place, place)
     }
 
     /// Rates of pressure and gap.
@@ -163,7 +161,7 @@ impl Board {
         let rate = self.along[place];
         match (self.rows[place].state, self.carried) {
             (NodeState::Contact, _) => [rate, 0.0],
-            (NodeState::Soft, _) => [rate, rate * self.compliance()],
+            (NodeState::Soft, _) => [rate * self.law.slope(), rate],
             (_, Some((carried, direction))) if carried == place => [-direction, rate],
             _ => [0.0, rate],
         }
@@ -262,9 +260,9 @@ impl Board {
 
     /// Puts a row on the slope, from the end with this pull, or holds its traction if it is not stable there.
     fn soften_or_hold(&mut self, place: usize, pull: f64) {
-        let softness = self.softness(place);
-        if softness < -LEAST_PIVOT {
-            self.note_pivot(softness);
+        let stability = self.stability(place);
+        if stability > LEAST_PIVOT {
+            self.note_pivot(stability);
             self.soften(place);
             self.change(place, NodeState::Soft);
         } else {
@@ -273,8 +271,7 @@ impl Board {
     }
 
     fn touch(&mut self, place: usize) {
-        let part = self.entry(place, place) / self.compliance();
-        self.note_pivot(part);
+        self.note_pivot(self.entry(place, place) / self.law.compliance());
         self.pivot(place);
         self.change(place, NodeState::Contact);
     }
@@ -311,15 +308,20 @@ impl Board {
 
     /// Whether other soft nodes have to be held for what happens next to a row, and some soft nodes are not watched.
     pub(super) fn lacks_others(&self, place: usize) -> bool {
-        let is_stable = || self.entry(place, place) * self.compliance() > LEAST_PIVOT;
-        self.rows[place].state == NodeState::Contact && self.other_soft > 0 && !is_stable()
+        self.rows[place].state == NodeState::Contact
+            && self.other_soft > 0
+            && self.hardness(place) <= LEAST_PIVOT
+    }
+
+    /// The pressure that a gap of a node in contact makes, over that of a node alone: positive if it may part.
+    fn hardness(&self, place: usize) -> f64 {
+        self.entry(place, place) * self.law.compliance()
     }
 
     /// Lets a node part. Where soft nodes would not be stable then, those whose traction it would change most are held
     /// first.
     fn part(&mut self, place: usize) {
-        // The pivot is the pressure that a gap there makes, and has to be positive.
-        let mut part = self.entry(place, place) * self.compliance();
+        let mut part = self.hardness(place);
         while part.is_nan() || part <= LEAST_PIVOT {
             let soft = (0..self.size()).filter(|&row| self.rows[row].state == NodeState::Soft);
             let column = self.answers.column(place);
@@ -329,7 +331,7 @@ impl Board {
             };
             self.harden(row);
             self.hold(row, -self.rows[row].pressure, -1.0);
-            part = self.entry(place, place) * self.compliance();
+            part = self.hardness(place);
         }
         self.note_pivot(part);
         self.pivot(place);
@@ -377,7 +379,7 @@ impl Board {
             is_above && gap < law.range() - corner
         };
         let lag = direction * (law.pull(gap) - pull);
-        let gain = if on_slope { -self.softness(place) } else { 1.0 };
+        let gain = if on_slope { self.stability(place) } else { 1.0 };
         if lag <= LAG * law.stress() && gain > 0.0 {
             self.held.remove(0);
             self.carried = None;
@@ -430,7 +432,7 @@ impl Board {
     /// The energy of adhesion of all nodes but soft ones that are not watched, over the area of a cell.
     pub(super) fn energy(&self) -> f64 {
         let pulled = self.rows.iter().map(|row| match row.state {
-            NodeState::Soft => -0.5 * row.pressure * row.pressure * self.compliance(),
+            NodeState::Soft => -0.5 * row.pressure * row.pressure / self.law.slope(),
             NodeState::Cohesive | NodeState::Held => self.law.energy(row.gap),
             NodeState::Open | NodeState::Contact => 0.0,
         });

@@ -333,17 +333,19 @@ impl Body {
         let Some(soft) = self.soft_factor.as_ref().filter(|_| of_rows.len() == nodes.len()) else {
             return Err(too_few);
         };
-        let states: Vec<NodeState> = nodes.iter().map(|&node| front.nodes[node]).collect();
+        // Of nodes in contact a gap is given, of which the matrix of the updater has the negative.
+        let is_contact: Vec<bool> =
+            nodes.iter().map(|&node| front.nodes[node] == NodeState::Contact).collect();
+        let signs: Vec<f64> = is_contact.iter().map(|is| if *is { -1.0 } else { 1.0 }).collect();
         let (size, width) = (nodes.len(), nodes.len() + 2);
         let schur = &self.watched.schur;
         // Where each column comes from: what is known of a node, or one that is solved for.
         let sources = Sources::of(&nodes, known.as_ref());
         let mut columns = Vec::with_capacity(soft.len() * sources.new.len());
         for (&place, &node) in soft.places().iter().zip(&self.soft) {
-            columns.extend(sources.new.iter().map(|&row| match states.get(row) {
-                Some(NodeState::Soft) => f64::from(u8::from(of_rows[row] == place)),
-                Some(_) => schur.entry(place, of_rows[row]),
-                None => sums[row - size][node],
+            columns.extend(sources.new.iter().map(|&column| match of_rows.get(column) {
+                Some(&row) => schur.entry(place, row),
+                None => sums[column - size][node],
             }));
         }
         let solved = soft.half(columns, sources.new.len());
@@ -354,25 +356,18 @@ impl Body {
         let gram = half.gram().ok_or(Error::FactorizationFailed { nodes: width })?;
         let mut matrix = vec![0.0; width * size];
         for (j, column) in matrix.chunks_exact_mut(width).enumerate() {
-            // A gap is given of those in contact, of which the matrix of the updater has the negative.
-            let sign = if states[j] == NodeState::Contact { -1.0 } else { 1.0 };
-            let is_soft = states[j] == NodeState::Soft;
+            let sign = signs[j];
             for (i, value) in column.iter_mut().enumerate() {
                 let through = gram.entry(i, j);
-                *value = match states.get(i) {
-                    _ if is_soft => -through,
-                    Some(NodeState::Soft) => sign * through,
-                    Some(_) => sign * (schur.entry(of_rows[i], of_rows[j]) + through),
+                *value = match of_rows.get(i) {
+                    Some(&row) => sign * (schur.entry(row, of_rows[j]) + through),
                     None => sums[i - size][nodes[j]] + sign * through,
                 };
             }
         }
         self.sums = Some(sums);
-        let with_pressure =
-            |state: &NodeState| matches!(state, NodeState::Soft | NodeState::Contact);
-        let signs = states.iter().map(|state| if with_pressure(state) { -1.0 } else { 1.0 });
-        let answers = Answers::new(matrix, states.iter().map(with_pressure).collect());
-        Ok((answers, Rows { nodes, half, signs: signs.collect() }))
+        let answers = Answers::new(matrix, is_contact);
+        Ok((answers, Rows { nodes, half, signs }))
     }
 
     /// Sums of the squared pressures of the soft nodes that are no rows, at each of some instants: how far the approach

@@ -203,6 +203,11 @@ impl CohesiveLaw {
         if self.stress == 0.0 { 0.0 } else { self.stress / (self.range - self.flat) }
     }
 
+    /// C(0,0) [m/Pa], about the mean planes of a periodic half-space: what a unit pressure displaces its cell by.
+    pub(super) fn compliance(&self) -> f64 {
+        self.compliance
+    }
+
     /// k C(0,0): up to 0.5 the mesh adds no loop of its own; a law beyond 0.8 is refused.
     #[must_use]
     pub fn resolution(&self) -> f64 {

@@ -255,7 +255,7 @@ impl<'a> Play<'a> {
         let rates = nodes.iter().map(|&node| {
             let [[_, dp], [_, dgap]] = line(node);
             match front.nodes[node] {
-                NodeState::Soft | NodeState::Contact => dp,
+                NodeState::Contact => dp,
                 _ => dgap,
             }
         });
@@ -321,7 +321,7 @@ impl<'a> Play<'a> {
         let slope = self.board.law().slope();
         let rows = self.begun.iter().zip(&self.board.rows);
         let given = rows.map(|(begun, now)| match begun.state {
-            NodeState::Soft => (now.gap - begun.gap) - (now.pressure - begun.pressure) / slope,
+            NodeState::Soft => (now.pressure - begun.pressure) - slope * (now.gap - begun.gap),
             NodeState::Contact => now.gap,
             _ => now.pressure - begun.pressure,
         });
