@@ -47,14 +47,17 @@ pub fn adhesion(bytes: &[u8]) -> Verdict {
     run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
 }
 
-/// A law whose range is of the order of the heights; none on one cell of the spectral half-space, which has no wave, so
+/// A law whose range is of the order of the heights, one in five weak: stiff bodies that stick a little; none on one cell of the spectral half-space, which has no wave, so
 /// that no pressure displaces anything.
 fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Option<Adhesion>, Error> {
     let grid = sample.kernel.grid();
     let height = sample.surface.peak_to_valley();
     let height = if height > 0.0 { height } else { grid.dx() };
     let range = height * draw.decades(-1.0, 0.7);
-    let resolution = draw.between(0.05, 0.75);
+    let resolution = match draw.between(0.05, 0.75) {
+        weak if weak < 0.2 => 0.2 * 10_f64.powf(-7.3 * (weak - 0.05) / 0.15),
+        resolution => resolution,
+    };
     // Per work, of a triangle of this range.
     let (one, unit) = (1e-3, 1.0);
     let compliance = Adhesion::work(one).range(unit).on(&*sample.kernel)?;

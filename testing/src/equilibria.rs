@@ -36,12 +36,24 @@ impl Equilibria {
         (&self.gap + &self.matrix * pressure)[0] - fields.gap[0]
     }
 
-    /// Influence between nodes that answer; soft ones give way along the slope of the law as well.
-    fn reduced(&self, free: &[usize], is_soft: impl Fn(usize) -> bool) -> DMatrix<f64> {
-        DMatrix::from_fn(free.len(), free.len(), |i, j| {
+    /// Influence between nodes that answer; soft ones give way along the slope of the law as well. Rows and columns are
+    /// divided by the roots of what each node gives way by, which are returned: with weak laws soft ones give way far more.
+    fn reduced(
+        &self,
+        free: &[usize],
+        is_soft: impl Fn(usize) -> bool,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let size = free.len();
+        let gives_way = |i: usize| match is_soft(free[i]) {
+            true => 1.0 / self.law.slope(),
+            false => self.matrix[(free[i], free[i])],
+        };
+        let roots = DVector::from_fn(size, |i, _| gives_way(i).sqrt());
+        let reduced = DMatrix::from_fn(size, size, |i, j| {
             let slope = if i == j && is_soft(free[i]) { 1.0 / self.law.slope() } else { 0.0 };
-            self.matrix[(free[i], free[j])] - slope
-        })
+            (self.matrix[(free[i], free[j])] - slope) / (roots[i] * roots[j])
+        });
+        (reduced, roots)
     }
 
     /// How the sums of all pressures and of all gaps change with the approach in the gauge of the kernel, while nodes
@@ -57,12 +69,13 @@ impl Equilibria {
         if free.is_empty() {
             return Some([(0.0, alone), (-count, count)]);
         }
-        let reduced = self.reduced(&free, |i| nodes[i] == NodeState::Soft);
+        let (reduced, roots) = self.reduced(&free, |i| nodes[i] == NodeState::Soft);
         let inverse = reduced.clone().try_inverse()?;
-        let rates = inverse.column_sum();
+        let scale = roots.map(f64::recip);
+        let rates = (&inverse * &scale).component_mul(&scale);
         let gaps = self.matrix.select_columns(&free) * &rates;
         let condition = reduced.norm() * inverse.norm();
-        let off = condition * (inverse.norm() * free.len() as f64 + alone);
+        let off = condition * (inverse.norm() * scale.norm_squared() + alone);
         Some([(rates.sum(), off), (gaps.sum() - count, count * (1.0 + greatest * off))])
     }
 
@@ -74,13 +87,14 @@ impl Equilibria {
         let mut pressure =
             DVector::from_fn(size, |i, _| if nodes[i] == COHESIVE { -law.stress() } else { 0.0 });
         let base = &self.gap + &self.matrix * &pressure;
-        let reduced = self.reduced(&free, |i| nodes[i] == SOFT);
+        let (reduced, roots) = self.reduced(&free, |i| nodes[i] == SOFT);
         let right = DVector::from_fn(free.len(), |i, _| {
             let range = if nodes[free[i]] == SOFT { law.range() } else { 0.0 };
-            range + approach - base[free[i]]
+            (range + approach - base[free[i]]) / roots[i]
         });
         let solved =
             if free.is_empty() { right.clone() } else { reduced.clone().lu().solve(&right)? };
+        let solved = solved.component_div(&roots);
         free.iter().zip(solved.iter()).for_each(|(&i, &p)| pressure[i] = p);
         let gap = &self.gap + &self.matrix * &pressure - DVector::from_element(size, approach);
         let is_on_law = (0..size).all(|i| match nodes[i] {
