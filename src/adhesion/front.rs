@@ -537,10 +537,15 @@ impl Body {
         Ok(Field { pressure: [pressure, zero.clone()], gap: [gap, zero] })
     }
 
+    /// The greatest length that gaps have come of: rounding is relative to it.
+    pub(super) fn greatest_length(&self, front: &Front) -> f64 {
+        self.law.range() + self.problem.greatest_gap() + front.approach.abs()
+    }
+
     /// Gives gaps that are known by their state the values that they have, after a check.
     fn settle(&self, front: &Front, field: &mut Field) -> Result<(), Error> {
         let slope = self.law.slope();
-        let length = self.law.range() + self.problem.greatest_gap() + front.approach.abs();
+        let length = self.greatest_length(front);
         for (node, state) in front.nodes.iter().enumerate() {
             let [p, rate] = [0, 1].map(|k| field.pressure[k][node]);
             let known = match state {
