@@ -537,15 +537,15 @@ impl Body {
         Ok(Field { pressure: [pressure, zero.clone()], gap: [gap, zero] })
     }
 
-    /// The greatest length that gaps have come of: rounding is relative to it.
-    pub(super) fn greatest_length(&self, front: &Front) -> f64 {
-        self.law.range() + self.problem.greatest_gap() + front.approach.abs()
+    /// The greatest length that gaps at an approach have come of: rounding is relative to it.
+    pub(super) fn greatest_length(&self, approach: f64) -> f64 {
+        self.law.range() + self.problem.greatest_gap() + approach.abs()
     }
 
     /// Gives gaps that are known by their state the values that they have, after a check.
     fn settle(&self, front: &Front, field: &mut Field) -> Result<(), Error> {
         let slope = self.law.slope();
-        let length = self.greatest_length(front);
+        let length = self.greatest_length(front.approach);
         for (node, state) in front.nodes.iter().enumerate() {
             let [p, rate] = [0, 1].map(|k| field.pressure[k][node]);
             let known = match state {

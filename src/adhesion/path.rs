@@ -28,7 +28,9 @@ const SOFT_FOR_ONE: usize = 4;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to
 /// 1e-12 whatever the windows were, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
-/// The same of a state whose fields are asked for, and of its approach: one of another path is further off.
+/// What a window makes of the load, relative to what presses all nodes down by the greatest length.
+const ROUNDING: f64 = 1e-15;
+/// The same as [`SAME_LOAD`] of a state whose fields are asked for, and of its approach: one of another path is further off.
 const RECOGNISED: f64 = 1e-6;
 
 /// Why a branch has ended.
@@ -244,7 +246,7 @@ impl AdhesivePath {
         self.front = Front { nodes, approach, held: Vec::new() };
         self.body.follow(&self.front)?;
         let field = self.body.survey(&self.front, last.direction.sign())?;
-        if let Some(found) = self.other_load(&field, last.contact.load, SAME_LOAD) {
+        if let Some(found) = self.other_load(&field, &last.contact, SAME_LOAD) {
             return Err(Error::Inconsistent {
                 step: last.step,
                 quantity: "load",
@@ -261,15 +263,19 @@ impl AdhesivePath {
         Ok(())
     }
 
-    /// The load that the pressures of a field carry, if it differs from `load` by more than a part of the sum of all
-    /// forces.
-    fn other_load(&self, field: &Field, load: f64, part: f64) -> Option<f64> {
+    /// The load that the pressures of a field carry, if it differs from that of a state by more than a part of the sum
+    /// of all forces.
+    fn other_load(&self, field: &Field, state: &ContactState, part: f64) -> Option<f64> {
         let [[pressures, _], _] = field.sums();
-        // Pressures differ in sign: rounding goes with the sum of their absolute values.
+        // Pressures differ in sign: rounding goes with the sum of their absolute values. A window may have begun at far
+        // greater ones.
         let size: f64 = field.pressure[0].iter().map(|p| p.abs()).sum();
-        let [found, unit] = [pressures, size].map(|sum| sum * self.grid().cell_area());
-        let error = (found - load).abs();
-        (error.is_nan() || error > part * unit).then_some(found)
+        let pressed = self.body.greatest_length(state.approach) / self.body.law.compliance();
+        let greatest = self.grid().nodes() as f64 * pressed;
+        let area = self.grid().cell_area();
+        let (found, allowed) = (area * pressures, area * (part * size + ROUNDING * greatest));
+        let error = (found - state.load).abs();
+        (error.is_nan() || error > allowed).then_some(found)
     }
 
     /// Where the path was after so many states.
@@ -301,16 +307,15 @@ impl AdhesivePath {
             Error::NotOnPath { step, load, approach, quantity, value, expected }
         };
         let front = self.front_at(state.step);
-        let length = self.body.law.range() + self.body.problem.greatest_gap() + approach.abs();
         let of_mark = self.gauge().0.reported_approach(front.approach, load);
         let error = (of_mark - approach).abs();
-        if error.is_nan() || error > RECOGNISED * length {
+        if error.is_nan() || error > RECOGNISED * self.body.greatest_length(approach) {
             return Err(not_on_path("approach", of_mark));
         }
         let mut body = Body::new(Arc::clone(&self.body.problem), self.body.law, self.body.budget);
         body.follow(&front)?;
         let field = body.survey(&front, self.direction.sign())?;
-        if let Some(found) = self.other_load(&field, load, RECOGNISED) {
+        if let Some(found) = self.other_load(&field, &state.contact, RECOGNISED) {
             return Err(not_on_path("load", found));
         }
         let (nx, ny) = self.grid().shape();

@@ -128,7 +128,7 @@ pub(super) fn follow(
 /// Nodes that are beyond the law of their state, and by how much.
 fn beyond(body: &Body, front: &Front, field: &Field) -> Vec<(usize, f64)> {
     let law = &body.law;
-    let length = body.greatest_length(front);
+    let length = body.greatest_length(front.approach);
     let slack = |unit: f64| (SLACK + ROUNDING * length / unit) / body.least_pivot();
     let of_gap = slack(law.range());
     // What the stress displaces a node by that it acts on.
