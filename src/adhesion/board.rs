@@ -11,10 +11,6 @@ const LEAST_PIVOT: f64 = 1e-10;
 const SMALL_PIVOT: f64 = 1e-3;
 /// Nodes within this part of the range, or of the stress, of an event have it together.
 const TIE: f64 = 1e-13;
-/// By how much a gap may be beside a corner of the law, relative to the range: nodes of one height come to a corner
-/// together but for what the lag of those that were put on their law before has moved the others by.
-const CORNER: f64 = LAG;
-
 /// How far a pull may be from its law where a node that is carried is put on that, and from an end of the law where a
 /// node is held there, relative to the stress. Energies are stationary at the law: they miss its square.
 pub(super) const LAG: f64 = 1e-10;
@@ -369,7 +365,7 @@ impl Board {
         let (place, direction) = self.carried?;
         let law = self.law;
         let (gap, pull) = (self.rows[place].gap, -self.rows[place].pressure);
-        let corner = CORNER * law.range();
+        let corner = law.gap_of(LAG);
         let grows = direction > 0.0;
         let on_slope = if grows {
             gap <= law.range() + corner && gap > law.flat_range() + corner

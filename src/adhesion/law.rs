@@ -12,6 +12,10 @@ const BORDER: f64 = 0.5;
 /// law is refused.
 const WARNED: f64 = 0.5;
 const GREATEST: f64 = 0.8;
+/// Soft nodes, and neighbours, make so many times of what a pull moves the gap of a cell by; and the least part of the
+/// range that is made of it, for what rounding leaves.
+const AMPLIFIED: f64 = 20.0;
+const LEAST_PART: f64 = 1e-3;
 /// How far beyond its law a traction that is held has to be to go against its gap, relative to the stress: rounding
 /// is far less, even where a state is nearly unstable.
 const BEYOND: f64 = 1e-6;
@@ -240,6 +244,12 @@ impl CohesiveLaw {
     #[must_use]
     pub fn pull(&self, gap: f64) -> f64 {
         (self.slope() * (self.range - gap)).clamp(0.0, self.stress)
+    }
+
+    /// By how much gaps may be off where pulls are off by a part of the stress: by that part of the range, and less where
+    /// the law is weak. Nodes of one height come to a corner of the law together but for this.
+    pub(super) fn gap_of(&self, part: f64) -> f64 {
+        part * self.range * (AMPLIFIED * self.resolution()).clamp(LEAST_PART, 1.0)
     }
 
     /// Which way a pull that is held goes to the law: 1 where it grows and −1 where it falls. It goes the way of its gap

@@ -12,13 +12,14 @@ use crate::error::AdhesionError;
 use crate::kernel::Gauge;
 use crate::{Error, Grid};
 
-/// By how much a node may be beyond its law at the end of a window, in pressures relative to the stress, in gaps to the
-/// range: ten times the lag with which a node that is carried is put on its law, or held at an end of it, which others
+/// By how much a pressure may be beyond its law at the end of a window, relative to the stress, and what gaps that
+/// moves: ten times the lag with which a node that is carried is put on its law, or held at an end of it, which others
 /// answer to. There is rounding of the greatest length besides, and in contact of the pressure that displaces a node by
-/// that, which may be 10⁷ times the stress where stiff bodies stick a little. Soft nodes near an instability amplify all
-/// of it.
+/// that, which may be 10⁷ times the stress where stiff bodies stick a little: ten times more, for neighbours that are in
+/// contact too. Soft nodes near an instability amplify all of it.
 const SLACK: f64 = 10.0 * LAG;
 const ROUNDING: f64 = 1e-12;
+const AMONG_OTHERS: f64 = 10.0;
 /// How often a window is tried, with more nodes or with fewer events each time.
 const TRIES: usize = 60;
 /// Other nodes that are watched in a window of all soft ones.
@@ -129,10 +130,10 @@ pub(super) fn follow(
 fn beyond(body: &Body, front: &Front, field: &Field) -> Vec<(usize, f64)> {
     let law = &body.law;
     let length = body.greatest_length(front.approach);
-    let slack = |unit: f64| (SLACK + ROUNDING * length / unit) / body.least_pivot();
-    let of_gap = slack(law.range());
+    let of_gap = (law.gap_of(SLACK) + ROUNDING * length) / law.range() / body.least_pivot();
     // What the stress displaces a node by that it acts on.
-    let of_pressure = slack(law.resolution() * (law.range() - law.flat_range()));
+    let displaced = law.resolution() * (law.range() - law.flat_range());
+    let of_pressure = (SLACK + AMONG_OTHERS * ROUNDING * length / displaced) / body.least_pivot();
     let nodes = front.nodes.iter().enumerate().filter_map(|(node, &state)| {
         let value = excess(law, state, [field.pressure[0][node], field.gap[0][node]]);
         let slack = if state == NodeState::Contact { of_pressure } else { of_gap };
