@@ -151,10 +151,17 @@ pub(crate) fn same_path(
         };
         // Full contact has none where the mean displacement is arbitrary: there it is the rate on the way to it.
         let before = k.checked_sub(1).and_then(|before| rate(&exact[before]));
-        // A yield takes from it, on a plateau all of it.
-        let rate = match (rate(expected), before) {
-            (Some(here), Some(before)) if yields => Some(here.max(before)),
-            (here, before) => here.or(before),
+        let here = rate(expected);
+        // A yield takes from it, on a plateau all of it: of what there is on the way, the greatest.
+        let way = [state, expected].map(|state| state.contact.approach);
+        let way = way[0].min(way[1])..=way[0].max(way[1]);
+        let is_on_way = |state: &&LoadingState| yields && way.contains(&state.contact.approach);
+        let on_way = exact.iter().filter(is_on_way).filter_map(rate);
+        let most = |one: Option<f64>, other: f64| Some(one.map_or(other, |one| one.max(other)));
+        let rate = if yields {
+            before.into_iter().chain(on_way).fold(here, most)
+        } else {
+            here.or(before)
         };
         let by_error = error * rate.unwrap_or(0.0);
         // The energy is what comes in, which goes with the approach, less plastic work, which a window knows in parts
