@@ -153,13 +153,11 @@ pub(crate) fn same_path(
         let before = k.checked_sub(1).and_then(|before| rate(&exact[before]));
         let here = rate(expected);
         // A yield takes from it, on a plateau all of it: of what there is on the way, the greatest.
-        let way = [state, expected].map(|state| state.contact.approach);
-        let way = way[0].min(way[1])..=way[0].max(way[1]);
-        let is_on_way = |state: &&LoadingState| yields && way.contains(&state.contact.approach);
-        let on_way = exact.iter().filter(is_on_way).filter_map(rate);
-        let most = |one: Option<f64>, other: f64| Some(one.map_or(other, |one| one.max(other)));
+        let ends = [state, expected].map(|state| state.contact.approach);
+        let way = ends[0].min(ends[1])..=ends[0].max(ends[1]);
         let rate = if yields {
-            before.into_iter().chain(on_way).fold(here, most)
+            let on_way = exact.iter().filter(|state| way.contains(&state.contact.approach));
+            before.into_iter().chain(here).chain(on_way.filter_map(rate)).reduce(f64::max)
         } else {
             here.or(before)
         };
