@@ -306,18 +306,18 @@ impl Board {
     pub(super) fn lacks_others(&self, place: usize) -> bool {
         self.rows[place].state == NodeState::Contact
             && self.other_soft > 0
-            && self.hardness(place) <= LEAST_PIVOT
+            && self.stiffness(place) <= LEAST_PIVOT
     }
 
     /// The pressure that a gap of a node in contact makes, over that of a node alone: positive if it may part.
-    fn hardness(&self, place: usize) -> f64 {
+    fn stiffness(&self, place: usize) -> f64 {
         self.entry(place, place) * self.law.compliance()
     }
 
     /// Lets a node part. Where soft nodes would not be stable then, those whose traction it would change most are held
     /// first.
     fn part(&mut self, place: usize) {
-        let mut part = self.hardness(place);
+        let mut part = self.stiffness(place);
         while part.is_nan() || part <= LEAST_PIVOT {
             let soft = (0..self.size()).filter(|&row| self.rows[row].state == NodeState::Soft);
             let column = self.answers.column(place);
@@ -327,7 +327,7 @@ impl Board {
             };
             self.harden(row);
             self.hold(row, -self.rows[row].pressure, -1.0);
-            part = self.hardness(place);
+            part = self.stiffness(place);
         }
         self.note_pivot(part);
         self.pivot(place);

@@ -207,7 +207,7 @@ impl CohesiveLaw {
         if self.stress == 0.0 { 0.0 } else { self.stress / (self.range - self.flat) }
     }
 
-    /// C(0,0) [m/Pa], about the mean planes of a periodic half-space: what a unit pressure displaces its cell by.
+    /// C(0,0) \[m/Pa\], about the mean planes of a periodic half-space: what a unit pressure displaces its cell by.
     pub(super) fn compliance(&self) -> f64 {
         self.compliance
     }

@@ -30,7 +30,8 @@ const SOFT_FOR_ONE: usize = 4;
 const SAME_LOAD: f64 = 1e-9;
 /// What a window makes of the load, relative to what presses all nodes down by the greatest length.
 const ROUNDING: f64 = 1e-15;
-/// The same as [`SAME_LOAD`] of a state whose fields are asked for, and of its approach: one of another path is further off.
+/// The same as [`SAME_LOAD`] of a state whose fields are asked for, and of its approach: one of another path is further
+/// off.
 const RECOGNISED: f64 = 1e-6;
 
 /// Why a branch has ended.
