@@ -196,23 +196,22 @@ mod tests {
             let mut with_other = other.clone();
             for step in 0..80 {
                 let place = (step * 29 + 5) % size;
-                let mut exchange = || {
+                let mut exchange_both = |rows: &mut [Vec<f64>]| {
                     let factor = with_other[place] / rows[place][place];
                     for (i, value) in with_other.iter_mut().enumerate() {
                         *value =
                             if i == place { -factor } else { *value - factor * rows[i][place] };
                     }
-                    exchange(&mut rows, place);
-                    rows[place][place]
+                    exchange(rows, place);
                 };
-                exchange();
+                exchange_both(&mut rows);
                 answers.pivot(place, [&mut other]);
                 if step % 7 == 3 {
                     // As a pressure the node obeys its law with the stiffness off its diagonal.
                     let stiffness = if step % 2 == 0 { 0.005 } else { -0.005 };
-                    exchange();
+                    exchange_both(&mut rows);
                     rows[place][place] -= stiffness;
-                    exchange();
+                    exchange_both(&mut rows);
                     answers.feed_back(place, stiffness, [&mut other]);
                 }
                 for j in 0..size {
