@@ -162,7 +162,7 @@ enum Outcome {
     Led(Front),
     /// Something happens to these nodes, which are not watched.
     Lacks(Vec<usize>),
-    /// The first event needs all soft nodes to be watched.
+    /// What happens first needs all soft nodes to be watched.
     LacksSoft,
 }
 
@@ -347,7 +347,8 @@ impl<'a> Play<'a> {
         let (mut most, mut until) = (most, f64::INFINITY);
         loop {
             self.run(most, until);
-            if self.lacks_others && self.events == 0 {
+            // Nor with events of the instant that it begins at alone: near an instability what is left of them grows.
+            if self.lacks_others && (self.events == 0 || !self.has_moved) {
                 return Ok(Outcome::LacksSoft);
             }
             let Some(ended) = self.ended(front) else { return Ok(Outcome::Nothing) };
