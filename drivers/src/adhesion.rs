@@ -47,8 +47,8 @@ pub fn adhesion(bytes: &[u8]) -> Verdict {
     run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
 }
 
-/// A law whose range is of the order of the heights, one in five weak: stiff bodies that stick a little; none on one cell of the spectral half-space, which has no wave, so
-/// that no pressure displaces anything.
+/// A law whose range is of the order of the heights, one in five weak: stiff bodies that stick a little. None on one
+/// cell of the spectral half-space, which has no wave, so that no pressure displaces anything.
 fn law(draw: &mut Draw<'_>, sample: &Sample) -> Result<Option<Adhesion>, Error> {
     let grid = sample.kernel.grid();
     let height = sample.surface.peak_to_valley();

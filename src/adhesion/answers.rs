@@ -80,8 +80,8 @@ impl Answers {
     }
 
     /// Lets the pressure of a node whose gap answers grow by `stiffness` times that gap besides what is given of it, in
-    /// the matrix and in some more columns: with `f = stiffness / (1 − stiffness T_ss)`, `T_ij` gains `f T_is T_sj`. The
-    /// negative stiffness takes that back.
+    /// the matrix and in some more columns: `T_ij` gains `f T_is T_sj`, with `f = stiffness / (1 − stiffness T_ss)`.
+    /// The negative stiffness takes that back.
     pub(super) fn feed_back<'a>(
         &mut self,
         place: usize,
@@ -107,7 +107,7 @@ impl Answers {
         let inverse = column[place].recip();
         column.iter_mut().for_each(|value| *value *= inverse);
         (column[place], row[place]) = (inverse, -1.0);
-        // The new row and column replace the old ones, in the matrix and in the products that are still to be subtracted.
+        // The new row and column replace the old ones, in the matrix and in products that are still to be subtracted.
         self.matrix[height * place..height * (place + 1)].fill(0.0);
         self.matrix[place..].iter_mut().step_by(height).take(size).for_each(|value| *value = 0.0);
         for (values, count) in [(&mut self.columns, height), (&mut self.rows, size)] {

@@ -12,9 +12,9 @@ const BORDER: f64 = 0.5;
 /// law is refused.
 const WARNED: f64 = 0.5;
 const GREATEST: f64 = 0.8;
-/// Soft nodes, and neighbours, make so many times of what a pull moves the gap of a cell by; and the least part of the
-/// range that is made of it, for what rounding leaves.
+/// Neighbours and soft nodes make the gap of a cell move by so many times what its own pull alone moves it by.
 const AMPLIFIED: f64 = 20.0;
+/// Gaps of the weakest laws may still be off by this part of what those of others may: less would be rounding.
 const LEAST_PART: f64 = 1e-3;
 /// How far beyond its law a traction that is held has to be to go against its gap, relative to the stress: rounding
 /// is far less, even where a state is nearly unstable.
@@ -246,8 +246,8 @@ impl CohesiveLaw {
         (self.slope() * (self.range - gap)).clamp(0.0, self.stress)
     }
 
-    /// By how much gaps may be off where pulls are off by a part of the stress: by that part of the range, and less where
-    /// the law is weak. Nodes of one height come to a corner of the law together but for this.
+    /// By how much gaps may be off where pulls are off by a part of the stress: by that part of the range, and less
+    /// where the law is weak. Nodes of one height come to a corner of the law together but for this.
     pub(super) fn gap_of(&self, part: f64) -> f64 {
         part * self.range * (AMPLIFIED * self.resolution()).clamp(LEAST_PART, 1.0)
     }

@@ -28,7 +28,8 @@ const SOFT_FOR_ONE: usize = 4;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to
 /// 1e-12 whatever the windows were, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
-/// What a window makes of the load, relative to what presses all nodes down by the greatest length.
+/// How far rounding within a window may put the load off, relative to what presses every node down by the greatest
+/// length.
 const ROUNDING: f64 = 1e-15;
 /// The same as [`SAME_LOAD`] of a state whose fields are asked for, and of its approach: one of another path is further
 /// off.

@@ -14,11 +14,12 @@ use crate::{Error, Grid};
 
 /// By how much a pressure may be beyond its law at the end of a window, relative to the stress, and what gaps that
 /// moves: ten times the lag with which a node that is carried is put on its law, or held at an end of it, which others
-/// answer to. There is rounding of the greatest length besides, and in contact of the pressure that displaces a node by
-/// that, which may be 10⁷ times the stress where stiff bodies stick a little: ten times more, for neighbours that are in
-/// contact too. Soft nodes near an instability amplify all of it.
+/// answer to. Soft nodes near an instability amplify it.
 const SLACK: f64 = 10.0 * LAG;
+/// The same for rounding of gaps, relative to the greatest length. A pressure in contact is off by what displaces its
+/// node by that, which may be 10⁷ times the stress where stiff bodies stick a little.
 const ROUNDING: f64 = 1e-12;
+/// Pressures are off by so many times more, for neighbours that are in contact too.
 const AMONG_OTHERS: f64 = 10.0;
 /// How often a window is tried, with more nodes or with fewer events each time.
 const TRIES: usize = 60;
@@ -347,7 +348,8 @@ impl<'a> Play<'a> {
         let (mut most, mut until) = (most, f64::INFINITY);
         loop {
             self.run(most, until);
-            // Nor with events of the instant that it begins at alone: near an instability what is left of them grows.
+            // A window that ends between events of the instant at which it begins would leave the rest of them late,
+            // and near an instability that grows.
             if self.lacks_others && (self.events == 0 || !self.has_moved) {
                 return Ok(Outcome::LacksSoft);
             }

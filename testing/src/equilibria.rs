@@ -37,7 +37,8 @@ impl Equilibria {
     }
 
     /// Influence between nodes that answer; soft ones give way along the slope of the law as well. Rows and columns are
-    /// divided by the roots of what each node gives way by, which are returned: with weak laws soft ones give way far more.
+    /// divided by the roots of what each node gives way by, which are returned: with weak laws soft ones give way far
+    /// more.
     fn reduced(
         &self,
         free: &[usize],
@@ -50,8 +51,8 @@ impl Equilibria {
         };
         let roots = DVector::from_fn(size, |i, _| gives_way(i).sqrt());
         let reduced = DMatrix::from_fn(size, size, |i, j| {
-            let slope = if i == j && is_soft(free[i]) { 1.0 / self.law.slope() } else { 0.0 };
-            (self.matrix[(free[i], free[j])] - slope) / (roots[i] * roots[j])
+            let along_slope = if i == j && is_soft(free[i]) { 1.0 } else { 0.0 };
+            self.matrix[(free[i], free[j])] / (roots[i] * roots[j]) - along_slope
         });
         (reduced, roots)
     }
