@@ -271,8 +271,9 @@ impl Trial<'_> {
         let deviation = 2.0 * steps * coefficient * self.springs.deviation;
         let displacement = ratio * (force / first + deviation) + UNDERFLOWS;
         let energy = coefficient * load * displacement + force * ratio * coefficient * approach;
-        // Energies underflow where loads and displacements do not.
-        [force, displacement, 4.0 * energy + f64::MIN_POSITIVE]
+        // Energies underflow where loads and displacements do not, and weights of μ on them.
+        let least = f64::MIN_POSITIVE * (1.0 + ratio * coefficient.powi(2));
+        [force, displacement, 4.0 * energy + least]
     }
 
     fn compare(&mut self, from: f64, load: f64, force: f64, lost: f64) -> Result<(), Violation> {
