@@ -1,20 +1,16 @@
 //! Time per influence coefficient: whole tables, and each regime of the Boussinesq kernel; time to
 //! make a periodic kernel.
 
-use std::fmt::Display;
 use std::hint::black_box;
 
 use asperity::{Boussinesq, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
+use asperity_benches::succeed;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
 /// A kernel on cells `aspect` times as long along x as along y.
 fn kernel(nodes: usize, aspect: f64) -> Boussinesq {
     let grid = succeed(Grid::new(nodes, nodes, 1e-6 * aspect, 1e-6));
     succeed(Boussinesq::new(grid, 1e11))
-}
-
-fn succeed<T, E: Display>(result: Result<T, E>) -> T {
-    result.unwrap_or_else(|error| unreachable!("{error}"))
 }
 
 /// The quadrant 0 ≤ di, dj < nodes, all that a table of an even kernel needs.

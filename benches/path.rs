@@ -10,6 +10,7 @@ use asperity::kernel::KernelTable;
 use asperity::loading::LoadingBuilder;
 use asperity::surface::Paraboloid;
 use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine, Surface};
+use asperity_benches::succeed;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
 
@@ -17,14 +18,6 @@ use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
 const SIDE: f64 = 2.5e-3;
 /// Nodes a side, and the contact area fraction at which the path ends.
 const CASES: [(usize, f64); 3] = [(64, 0.3), (128, 0.2), (256, 0.05)];
-
-/// Criterion takes no errors; a path that fails must not be reported as fast.
-fn succeed<T>(result: Result<T, asperity::Error>) -> T {
-    match result {
-        Ok(value) => value,
-        Err(error) => unreachable!("{error}"),
-    }
-}
 
 /// Floating-point operations of a factorisation of n nodes.
 fn flops(nodes: usize, fraction: f64) -> u64 {

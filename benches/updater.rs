@@ -15,6 +15,7 @@ use asperity::updater::{
     CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor,
 };
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
+use asperity_benches::succeed;
 use asperity_testing::{Altered, Call};
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, SamplingMode, Throughput};
@@ -92,14 +93,6 @@ fn share(
         work(updater, i);
     }
     part(updater.timings()) - before
-}
-
-/// Criterion takes no errors; a bench that fails must not be reported as fast.
-fn succeed<T>(result: Result<T, asperity::Error>) -> T {
-    match result {
-        Ok(value) => value,
-        Err(error) => unreachable!("{error}"),
-    }
 }
 
 fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {

@@ -271,6 +271,31 @@ fn states_are_those_that_are_asked_for() -> Done {
     Ok(())
 }
 
+/// Surfaces that stick meet before they would touch: a path may end there, and a record goes on from there.
+#[test]
+fn paths_end_at_approaches_below_zero() -> Done {
+    let folder = Scratch::new("adhesion_approach")?;
+    let before =
+        answer(&folder.0, &format!("{SOFT} {STICKS} --max-approach -0.2um --record r.npz"))?;
+    assert_eq!(number(&before, "approach"), -0.2e-6);
+    assert_eq!(before["ended_by"], "the requested approach");
+    assert!(number(&before, "contact_nodes") > 0.0 && number(&before, "load") < 0.0, "{before}");
+    let on = answer(&folder.0, "path --resume r.npz --max-approach 0 --out on")?;
+    assert_eq!(number(&on, "approach"), 0.0);
+    let once = answer(&folder.0, &format!("{SOFT} {STICKS} --max-approach 0"))?;
+    assert!((number(&on, "load") / number(&once, "load") - 1.0).abs() < 1e-8, "{on} {once}");
+    let dry = answer(&folder.0, &format!("{SOFT} {STICKS} --max-approach 0 --dry-run"))?;
+    assert_eq!(number(&dry, "contact_nodes"), 0.0);
+    // Before the first node is pulled there is no path.
+    for way in ["", "--dry-run"] {
+        let far = output(&folder.0, &format!("{SOFT} {STICKS} --max-approach -5um {way}"))?;
+        is_refused(&far, &["the path is at", "already"]);
+        let elastic = output(&folder.0, &format!("{SOFT} --max-approach -0.2um {way}"))?;
+        is_refused(&elastic, &["--max-approach -0.0000002 m must be positive"]);
+    }
+    Ok(())
+}
+
 /// A record goes on to another end, and back: what comes out is what comes of one go.
 #[test]
 fn records_go_on() -> Done {

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::ffi::OsStr;
 use std::fs;
 
-use common::{Scratch, asperity, data, is_refused, numbers};
+use common::{Scratch, asperity, data, is_refused, numbers, only_line};
 use serde_json::Value;
 
 fn run(folder: &Scratch, arguments: &[&str]) -> std::io::Result<std::process::Output> {
@@ -57,7 +57,7 @@ fn leaks_are_printed_and_drawn() -> Result<(), Box<dyn Error>> {
 
     // Each column is what the object calls so.
     let said = run(&folder, &[&LEAK[..], &["--json", "--states", "12", "--out", "json"]].concat())?;
-    let document: Value = serde_json::from_slice(&said.stdout)?;
+    let document = only_line(said)?;
     let constriction = [
         ("constriction_ix", "/constriction/node/0"),
         ("constriction_iy", "/constriction/node/1"),
@@ -80,14 +80,14 @@ fn leaks_are_printed_and_drawn() -> Result<(), Box<dyn Error>> {
         let at = ["--load", newtons, "--json", "--states", "0", "--out", "json"];
         let said = run(&folder, &[&LEAK[..], &at].concat())?;
         assert!(said.status.success());
-        let document: Value = serde_json::from_slice(&said.stdout)?;
+        let document = only_line(said)?;
         assert_eq!(document["leak_rate"].as_f64(), Some(rates[k]));
         assert_eq!(document["load"].as_f64(), Some(newtons.parse()?));
         assert_eq!(document["states"].as_array().map(Vec::len), Some(1));
         assert_eq!(document["constriction"].is_null(), rates[k] == 0.0);
     }
     let said = run(&folder, &[&LEAK[..], &["--json", "--states", "5", "--out", "json"]].concat())?;
-    let document: Value = serde_json::from_slice(&said.stdout)?;
+    let document = only_line(said)?;
     assert_eq!(document["leak_rate"].as_f64(), Some(0.0));
     assert_eq!(document["states"].as_array().map(Vec::len), Some(5));
     assert_eq!(document["states"][0]["leak_rate"].as_f64(), Some(rates[0]));
@@ -115,7 +115,7 @@ fn gases_leak_and_narrow_gaps_do_not() -> Result<(), Box<dyn Error>> {
         let said = run(&folder, &words)?;
         assert!(said.status.success());
         let document = run(&folder, &[&words[..], &["--json"]].concat())?;
-        Ok((serde_json::from_slice(&document.stdout)?, String::from_utf8(said.stdout)?))
+        Ok((only_line(document)?, String::from_utf8(said.stdout)?))
     };
     let rate = |document: &Value| document["states"][0]["leak_rate"].as_f64().ok_or("no rate");
     let (liquid, words) = leak("")?;
@@ -353,7 +353,7 @@ fn all_commands_seal_at_one_state() -> Result<(), Box<dyn Error>> {
     let answer = |arguments: &[&str]| -> Result<Value, Box<dyn Error>> {
         let done = run(&folder, arguments)?;
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        Ok(serde_json::from_slice(&done.stdout)?)
+        only_line(done)
     };
     for axis in ["x", "y"] {
         let leak = answer(&[

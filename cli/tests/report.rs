@@ -8,7 +8,7 @@ use std::fs;
 
 use asperity::io::read_npy;
 use asperity_testing::report;
-use common::{Scratch, asperity, column, is_refused, numbers, said};
+use common::{Scratch, answer, asperity, column, is_refused, numbers, said};
 use serde_json::Value;
 
 fn run(folder: &Scratch, line: &str) -> std::process::Output {
@@ -157,11 +157,7 @@ fn a_page_has_the_numbers_of_the_table() {
 fn a_page_has_the_residuals_of_the_last_state() {
     let folder = Scratch::new("report-residuals").unwrap();
     let line = "path --nodes 16 --periodic love --e-star 5e9 --mean-pressure 2e7 --fields npy";
-    let object = |line: &str| -> Value {
-        let output = run(&folder, &format!("{line} --json"));
-        assert!(output.status.success(), "{}", said(&output));
-        serde_json::from_slice(&output.stdout).unwrap()
-    };
+    let object = |line: &str| answer(&folder.0, line).unwrap();
     // Half of what is pressed hardest without a hardness is one that some nodes reach.
     let hardness = 0.5 * object(line)["max_pressure"].as_f64().unwrap();
     let last = object(&format!("{line} --hardness {hardness:e} --report"));

@@ -11,7 +11,7 @@ use std::path::Path;
 use asperity::io::write_npy;
 use asperity::record::LoadingRecord;
 use asperity::stress::{Measure, Subsurface};
-use common::{Scratch, is_refused, numbers, output, run};
+use common::{Scratch, answer, is_refused, numbers, output, run};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -53,8 +53,7 @@ fn stresses_are_printed_and_drawn() -> Done {
     }
     assert!(fs::read(folder.join("seen/stress.vti"))?.starts_with(b"<?xml"));
 
-    let json = line.replace("--volume 1 --out seen", "--json");
-    let document: Value = serde_json::from_slice(&run(&folder.0, &json)?.stdout)?;
+    let document = answer(&folder.0, &line.replace("--volume 1 --out seen", ""))?;
     let mut path = record.replay()?;
     let state = record.history().at_load(load).ok_or("no state")?;
     let pressure = path.fields_at(&state)?.pressure;
@@ -91,8 +90,7 @@ fn stresses_are_printed_and_drawn() -> Done {
 fn depths_may_be_given() -> Done {
     let folder = Scratch::new("stress-depths")?;
     run(&folder.0, "path --nodes 16 --e-star 1e11 --record path.npz --out path -q")?;
-    let found = run(&folder.0, "stress path.npz --poisson 0.3 --depth 1e-5 --json --out seen")?;
-    let document: Value = serde_json::from_slice(&found.stdout)?;
+    let document = answer(&folder.0, "stress path.npz --poisson 0.3 --depth 1e-5 --out seen")?;
     assert_eq!(document["bodies"][0]["depths"], serde_json::json!([1e-5]));
     assert_eq!(document["bodies"][0]["von_mises"]["depth"].as_f64(), Some(1e-5));
     assert!(folder.join("seen/stress.png").exists());
@@ -244,8 +242,7 @@ fn stresses_below_one_cell_are_loves() -> Done {
 fn coats_have_stresses() -> Done {
     let folder = Scratch::new("stress-coat")?;
     run(&folder.0, COAT)?;
-    let found = run(&folder.0, "stress coat.npz --json --out seen")?;
-    let document: Value = serde_json::from_slice(&found.stdout)?;
+    let document = answer(&folder.0, "stress coat.npz --out seen")?;
     let body = &document["bodies"][0];
     assert_eq!(body["poissons_ratio"].as_f64(), Some(0.25));
     let depths = body["depths"].as_array().ok_or("no depths")?;
@@ -261,8 +258,7 @@ fn coats_have_stresses() -> Done {
     let most = materials.iter().filter_map(stress).fold(0.0, f64::max);
     assert_eq!((materials.len(), stress(body)), (2, Some(most)));
     assert!(materials[0]["yield_stress"].is_null());
-    let found = run(&folder.0, "stress coat.npz --depth 1e-4 --json")?;
-    let document: Value = serde_json::from_slice(&found.stdout)?;
+    let document = answer(&folder.0, "stress coat.npz --depth 1e-4")?;
     let materials = &document["bodies"][0]["materials"];
     assert!(materials[0]["von_mises"]["value"].is_f64() && materials[1]["von_mises"].is_null());
 
@@ -271,8 +267,7 @@ fn coats_have_stresses() -> Done {
     let below = Subsurface::of_record(&record, 0.0)?;
     let mut path = record.replay()?;
     for (words, strengths) in [("2GPa,5e8", [2e9, 5e8]), ("1e9", [1e9; 2])] {
-        let line = format!("stress coat.npz --yield-stress {words} --json");
-        let document: Value = serde_json::from_slice(&run(&folder.0, &line)?.stdout)?;
+        let document = answer(&folder.0, &format!("stress coat.npz --yield-stress {words}"))?;
         let materials = document["bodies"][0]["materials"].as_array().ok_or("no materials")?;
         let found = below.first_yields(&mut path, record.history(), &strengths)?;
         assert_eq!(materials.len(), 2);

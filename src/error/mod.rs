@@ -215,11 +215,10 @@ pub enum Error {
         nodes: usize,
     },
 
-    /// The kernel breaks what it promises of the growth of contact, or is too ill-conditioned for
-    /// the promise to show: a node in contact would leave it, or one out of contact overlaps.
+    /// A pressure, a gap or one of their rates has a sign that it cannot have: the kernel breaks what it promises of the
+    /// growth of contact, or it is too ill-conditioned.
     #[error(
-        "the kernel breaks the promised growth of contact: at approach {approach} m the {quantity} \
-         of node ({ix}, {iy}) is {}",
+        "contact cannot go on with this kernel: at approach {approach} m the {quantity} of node ({ix}, {iy}) is {}",
         with_unit(quantity, *value)
     )]
     NotMonotone {

@@ -185,7 +185,7 @@ impl Expected {
         let start = Instant::now();
         let kernel = job.kernel()?;
         // It refuses what the path would refuse. That of a record does all its work again.
-        if job.begun().is_empty() {
+        if job.begun().is_empty() && job.law().is_none() {
             job.solver()?;
         }
         let set_up = start.elapsed().as_secs_f64();
@@ -238,6 +238,10 @@ impl End {
         let (solved, area) = match (target, job.hardness_map()) {
             (ContactTarget::AreaFraction(fraction), None) => {
                 return Self { contact: fraction * nodes, yielded: 0.0 };
+            }
+            // Without adhesion nothing touches before 0.
+            (ContactTarget::Approach(approach), _) if approach <= 0.0 => {
+                return Self { contact: 0.0, yielded: 0.0 };
             }
             // A load is solved for sooner, and its share of yielded nodes is that of the area.
             (ContactTarget::AreaFraction(fraction), Some(_)) => {

@@ -124,6 +124,9 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
 fn prepare(options: &Options, is_first: bool) -> Result<(Job, Vec<Named>), Failure> {
     options.check()?;
     let job = Job::new(options)?;
+    if job.law().is_none() {
+        options.check_approach()?;
+    }
     if options.unload && !job.has_hardness() && job.law().is_none() {
         return Err(Failure::request(
             "--unload needs --hardness, --yield or --work-of-adhesion: elastic contact goes back through the same states",

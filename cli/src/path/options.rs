@@ -171,8 +171,8 @@ struct Ends {
     #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), help_heading = "Where the path ends")]
     max_load: Option<f64>,
 
-    /// End the path at exactly this approach
-    #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), help_heading = "Where the path ends")]
+    /// End the path at exactly this approach; surfaces that stick begin below 0
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.any(), allow_hyphen_values = true, help_heading = "Where the path ends")]
     max_approach: Option<f64>,
 
     /// End the path at exactly this mean gap
@@ -220,6 +220,16 @@ impl Options {
     /// Whether no option says where the path ends.
     pub(super) fn has_open_end(&self) -> bool {
         self.ends.are_open()
+    }
+
+    /// `Ok` if a path without adhesion gets to the approach at which it is to end.
+    pub(super) fn check_approach(&self) -> Result<(), Failure> {
+        match self.ends.max_approach {
+            Some(approach) if approach <= 0.0 => Err(Failure::request(format!(
+                "--max-approach {approach} m must be positive: only with --work-of-adhesion anything happens before 0"
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// Those of one path of many.
