@@ -191,13 +191,19 @@ impl Springs {
         let scale = self.friction.compliance_ratio() * self.friction.coefficient();
         for _ in 0..4 * self.springs.len() + 20 {
             let rise = approach - self.approach;
+            let left = force - self.force();
+            // For the rounding of a sum springs would go to and fro for ever.
+            let sum: f64 = self.forces().map(f64::abs).sum();
+            if rise == 0.0 && left.abs() <= 4.0 * f64::EPSILON * sum {
+                return Ok(());
+            }
             let bound = scale * rise;
             for spring in &mut self.springs {
                 if spring.hold == Hold::Apart && rise > 0.0 && spring.gap <= self.approach {
                     spring.hold = Hold::Sticks;
                 }
             }
-            let shift = self.shift(bound, force - self.force());
+            let shift = self.shift(bound, left);
             let mut part = 1.0_f64;
             // Those that move with their bounds but for rounding would stick and slip in turn for ever.
             let slower = bound - 1e-12 * bound.abs();
