@@ -15,7 +15,7 @@ use super::plain::Plain;
 use super::state::{AdhesiveEvent, AdhesiveState, Direction, NodeState};
 use super::target::Targets;
 use super::trace::Trace;
-use super::window::{self, Played};
+use super::window::{self, Played, ROUNDING};
 use crate::contact::{ContactState, ContactTarget};
 use crate::kernel::Gauge;
 use crate::tied_events::TiedEvents;
@@ -28,9 +28,6 @@ const SOFT_FOR_ONE: usize = 4;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to
 /// 1e-12 whatever the windows were, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
-/// How far rounding within a window may put the load off, relative to what presses every node down by the greatest
-/// length.
-const ROUNDING: f64 = 1e-15;
 /// The same as [`SAME_LOAD`] of a state whose fields are asked for, and of its approach: one of another path is further
 /// off.
 const RECOGNISED: f64 = 1e-6;
@@ -270,7 +267,7 @@ impl AdhesivePath {
     fn other_load(&self, field: &Field, state: &ContactState, part: f64) -> Option<f64> {
         let [[pressures, _], _] = field.sums();
         // Pressures differ in sign: rounding goes with the sum of their absolute values. A window may have begun at far
-        // greater ones.
+        // greater ones, and knows all of them to rounding of what presses every node down by the greatest length.
         let size: f64 = field.pressure[0].iter().map(|p| p.abs()).sum();
         let pressed = self.body.greatest_length(state.approach) / self.body.law.compliance();
         let greatest = self.grid().nodes() as f64 * pressed;

@@ -18,7 +18,7 @@ use crate::{Error, Grid};
 const SLACK: f64 = 10.0 * LAG;
 /// The same for rounding of gaps, relative to the greatest length. A pressure in contact is off by what displaces its
 /// node by that, which may be 10⁷ times the stress where stiff bodies stick a little.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 /// Pressures are off by so many times more, for neighbours that are in contact too.
 const AMONG_OTHERS: f64 = 10.0;
 /// How often a window is tried, with more nodes or with fewer events each time.
