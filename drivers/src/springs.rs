@@ -5,6 +5,8 @@
 //! all springs that stick at that of the displacement. So the rate that carries a tangential load is the root of a
 //! monotone function with two corners, and the next event is that of the spring that reaches its bound first.
 
+use std::cmp::Ordering;
+
 use asperity::bed::Bed;
 use asperity::slip::Friction;
 
@@ -124,7 +126,13 @@ impl Springs {
         let after = self.knots.partition_point(|knot| knot.1 <= load);
         let after = after.clamp(1, self.knots.len() - 1);
         let (start, end) = (self.knots[after - 1], self.knots[after]);
-        if load == end.1 { end.0 } else { start.0 + (load - start.1) * compliance(start, end) }
+        let found = start.0 + (load - start.1) * compliance(start, end);
+        match load.total_cmp(&end.1) {
+            // Rounded, it might be beyond the knot.
+            Ordering::Less => found.min(end.0),
+            Ordering::Equal => end.0,
+            Ordering::Greater => found,
+        }
     }
 
     pub(crate) fn force(&self) -> f64 {
