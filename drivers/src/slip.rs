@@ -271,7 +271,7 @@ impl Trial<'_> {
         let deviation = 2.0 * steps * coefficient * self.springs.deviation;
         let displacement = ratio * (force / first + deviation) + UNDERFLOWS;
         let energy = coefficient * load * displacement + force * ratio * coefficient * approach;
-        // Energies underflow where loads and displacements do not, and weights of μ on them.
+        // Energies underflow where loads and displacements do not, and those of the path before κμ² multiplies them.
         let least = f64::MIN_POSITIVE * (1.0 + ratio * coefficient.powi(2));
         [force, displacement, 4.0 * energy + least]
     }

@@ -172,7 +172,7 @@ struct Ends {
     max_load: Option<f64>,
 
     /// End the path at exactly this approach; surfaces that stick begin below 0
-    #[arg(long, value_name = "METRES", value_parser = LENGTH.any(), allow_hyphen_values = true, help_heading = "Where the path ends")]
+    #[arg(long, value_name = "METRES", value_parser = LENGTH.any(), help_heading = "Where the path ends")]
     max_approach: Option<f64>,
 
     /// End the path at exactly this mean gap
