@@ -78,7 +78,7 @@ impl AdhesiveBuilder<'_> {
     }
 
     /// Ends the path with an error before it holds more than this many bytes; by default three quarters of the
-    /// machine's memory, where the system tells it.
+    /// memory that the process may use, where the system tells it.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
         self.memory_budget = Some(bytes);
         self

@@ -73,7 +73,7 @@ impl<'a> FixedLoadBuilder<'a> {
         self
     }
 
-    /// Bytes that may be held at most, by default three quarters of the machine's memory where the
+    /// Bytes that may be held at most, by default three quarters of the memory that the process may use, where the
     /// system says how much that is: some 500 for each node of a square grid, several times as many on thin ones, and
     /// some 350 for each node in contact. More is an [`Error::MemoryBudget`], before it is allocated.
     pub fn memory_budget(mut self, bytes: usize) -> Self {

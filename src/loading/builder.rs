@@ -81,7 +81,7 @@ impl LoadingSolver {
     #[doc(hidden)]
     pub fn check_room(grid: &Grid, boundary: Boundary, budget: Option<usize>) -> Result<(), Error> {
         let budget = budget.unwrap_or_else(memory::default_budget);
-        fixed_bytes(grid, boundary, budget).map(drop)
+        check_budget(LoadingRun::bytes_on(grid, boundary), budget)
     }
 
     /// The same for the whole path: `Ok` if it gets to full contact, by iterations where there is no room for a factor.
@@ -96,7 +96,8 @@ impl LoadingSolver {
         budget: Option<usize>,
     ) -> Result<(), Error> {
         let budget = budget.unwrap_or_else(memory::default_budget);
-        let fixed = fixed_bytes(grid, boundary, budget)?;
+        let fixed = LoadingRun::bytes_on(grid, boundary);
+        check_budget(fixed, budget)?;
         let bytes =
             |contact| fixed.saturating_add(ConjugateGradient::bytes_of(grid.nodes(), contact));
         // With the window of the last nodes.
@@ -198,7 +199,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         self.until(ContactTarget::AreaFraction(fraction))
     }
 
-    /// Ends the path before the first event that would bring more than this many nodes into contact.
+    /// Ends the path before the first event that would bring more than this many nodes into contact; with a hardness
+    /// also before a node yields once so many are.
     pub fn max_nodes(mut self, nodes: usize) -> Self {
         self.settings.max_nodes = Some(nodes);
         self
@@ -210,8 +212,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// would overlap. The path goes on behind full contact until all nodes have yielded, under the load H A, unless a
     /// limit ends it; no load limit may be as great as that. Infinity limits nothing.
     ///
-    /// Contact must be known to grow ([`ContactGrowth`]). An updater needs two more verbs for it,
-    /// [`watch_both`](LinearUpdater::watch_both) and [`solve_for`](LinearUpdater::solve_for); iterations
+    /// Contact must be known to grow ([`ContactGrowth`]). An updater needs [`watch_both`](LinearUpdater::watch_both),
+    /// [`solve_for`](LinearUpdater::solve_for), [`release`](LinearUpdater::release) and
+    /// [`truncate`](LinearUpdater::truncate) for it; iterations
     /// ([`ConjugateGradient`]) serve it as well, and take over from a factor as on elastic paths. The factor then holds
     /// elastic nodes only.
     ///
@@ -228,7 +231,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     }
 
     /// Ends the path with an error before it holds more than this many bytes; every state up to there has
-    /// then been yielded. By default three quarters of the machine's memory, where the system tells it
+    /// then been yielded. By default three quarters of the memory that the process may use, where the system tells it
     /// (Linux), and without limit elsewhere. Close to the limit windows become smaller. What each thread takes for
     /// products of matrices, some 5 MB, comes on top of it.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
@@ -241,8 +244,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// # Errors
     ///
     /// Those of [`Problem::new`]; [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no sense;
+    /// [`SurfaceError::LessThanOneNode`](crate::SurfaceError::LessThanOneNode) for an area fraction without a node;
     /// [`Error::MemoryBudget`] if not even the grid fits. With a hardness [`Error::NotPositive`] and
-    /// [`Error::GridMismatch`] for itself, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a
+    /// [`Error::GridMismatch`] for itself, [`Error::BeyondHardness`] for a load that it cannot bear, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a
     /// kernel that does not promise that contact grows.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
         let phase = Phase::new(self.updater, self.settings.hand_over);
@@ -284,7 +288,8 @@ impl<'a> Settings<'a> {
         }
         let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
         let (grid, boundary) = (self.kernel.grid(), self.kernel.boundary());
-        let mut fixed_bytes = fixed_bytes(&grid, boundary, budget)?;
+        let mut fixed_bytes = LoadingRun::bytes_on(&grid, boundary);
+        check_budget(fixed_bytes, budget)?;
         let problem = match self.hardness {
             Limit::None => Problem::new(self.surface, self.kernel)?,
             _ => Problem::with_hardness(self.surface, self.kernel)?,
@@ -293,14 +298,15 @@ impl<'a> Settings<'a> {
         grid.check_shape(problem.grid().shape())?;
         let limits = self.limits(&problem)?;
         let growth = problem.growth();
+        if growth == ContactGrowth::Unknown {
+            fixed_bytes += LoadingRun::bytes_where_nodes_leave(&grid);
+            check_budget(fixed_bytes, budget)?;
+        }
         let (plastic, problem) = match self.hardness.resolve(&problem)? {
             Some(hardness) => {
                 limits.check_hardness(&hardness, &grid)?;
                 fixed_bytes += Plastic::bytes_on(&grid, boundary);
-                if fixed_bytes > budget {
-                    let needed = fixed_bytes;
-                    return Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 });
-                }
+                check_budget(fixed_bytes, budget)?;
                 let (plastic, elastic) = Plastic::new(hardness, problem);
                 (Some(Arc::new(plastic)), elastic)
             }
@@ -327,13 +333,14 @@ impl<'a> Settings<'a> {
             timings: LoadingTimings::default(),
         };
         let end = limits.expected_nodes(grid.nodes(), None);
+        let window_size = self.window_size.map(|size| size.min(grid.nodes()));
         let handed_over_at = phase.hand_over(&mut run, end)?.then_some(0);
         phase.make_room(&run)?;
         Ok(LoadingPath {
             run,
             phase,
-            exact: Exact::new(growth, self.window_size),
-            estimated: Estimated::new(self.window_size, settles),
+            exact: Exact::new(growth, window_size),
+            estimated: Estimated::new(window_size, settles),
             single: Single::default(),
             handed_over_at,
             rebuilt_at: None,
@@ -358,15 +365,10 @@ impl<'a> Settings<'a> {
     }
 }
 
-/// The bytes that a path on a grid holds before its first node is in contact.
-///
-/// # Errors
-///
-/// [`Error::MemoryBudget`] if they exceed the budget.
-fn fixed_bytes(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, Error> {
-    let needed = LoadingRun::bytes_on(grid, boundary);
+/// `Ok` if the bytes that a path holds before its first node is in contact are within a budget.
+fn check_budget(needed: usize, budget: usize) -> Result<(), Error> {
     if needed <= budget {
-        return Ok(needed);
+        return Ok(());
     }
     Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 })
 }

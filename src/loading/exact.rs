@@ -18,10 +18,10 @@ use super::tuning::{
     TOLERANCE,
 };
 use super::walk::{Carried, Walk};
-use super::window::{SUMS, Watched, Window};
+use super::window::{Watched, Window};
 use crate::clock::Stopwatch;
 use crate::contact::ContactSequence;
-use crate::updater::{Left, LinearUpdater, Solution, join_all};
+use crate::updater::{Left, LinearUpdater, SUMS, Solution, join_all};
 use crate::{ContactGrowth, Error, Problem, UpdaterError};
 use leaving::AtStart;
 
@@ -106,6 +106,12 @@ impl Exact {
             self.window = Window::default();
         }
         Ok(queued.err().or(failure))
+    }
+
+    /// Gives back what windows take: the factor has been given up.
+    pub(super) fn give_up(&mut self) {
+        self.window = Window::default();
+        self.ranking = Ranking::new();
     }
 
     /// The present solution where it comes from the factor before the last yields: the factor would find it with other
@@ -330,9 +336,11 @@ impl Exact {
         let mut fewest = 1;
         while !self.window.is_of_touches() {
             let (trial, until) = self.try_end(run, updater)?;
-            if self.drop_later(run, until, &mut fewest) == 0 {
+            let stand = self.before(until, &mut fewest);
+            if stand == self.window.events().len() {
                 return self.commit(run, updater, log, trial);
             }
+            self.take_back(run, stand);
         }
         let count = run.contact.len();
         run.join(updater, &self.window)?;
@@ -345,11 +353,12 @@ impl Exact {
             run.renew_field(updater, end)?;
             let there = (&run.problem, &run.contact, &[][..]);
             let until = contradiction(run, there, (end, slack_at(run, there, end)));
-            let dropped = self.drop_later(run, until, &mut fewest);
-            if dropped == 0 {
+            let stand = self.before(until, &mut fewest);
+            if stand == self.window.events().len() {
                 break;
             }
-            run.cut(updater, run.contact.len() - dropped)?;
+            self.truncate(run, stand);
+            run.cut(updater, count + stand)?;
         }
         if let Some(at_start) = at_start.filter(|_| self.window.events().len() > 1) {
             let end = run.scalars.approach() + self.end();
@@ -382,24 +391,18 @@ impl Exact {
         self.window.events().last().map_or(0.0, |event| event.time)
     }
 
-    /// Drops the events behind the first contradiction, which began at `until` from the end of the window on, and
-    /// `fewest` at least; returns how many.
-    fn drop_later(
-        &mut self,
-        run: &mut LoadingRun,
-        until: Option<f64>,
-        fewest: &mut usize,
-    ) -> usize {
+    /// How many events stand where the first contradiction began at `until` from the end of the window on: those up to
+    /// there, without the last `fewest` at least.
+    fn before(&self, until: Option<f64>, fewest: &mut usize) -> usize {
         let events = self.window.events();
         let Some(until) = until.filter(|_| events.len() > 1) else {
-            return 0;
+            return events.len();
         };
         let until = self.end() + until;
         let later = events.iter().rev().take_while(|event| event.time > until).count();
         let dropped = later.max(*fewest).min(events.len() - 1);
         *fewest *= 2;
-        self.truncate(run, events.len() - dropped);
-        dropped
+        events.len() - dropped
     }
 
     /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns

@@ -64,12 +64,13 @@ impl LoadingPath {
     }
 
     /// Pressure, gap, displacement, maps and plastic depth of the present state, without contact before the first: one
-    /// backward substitution with the factor at hand, and one convolution. No pressure is negative: tension within the
-    /// error of a state, as on a node that has just touched, is zero.
+    /// backward substitution with the factor at hand, and one convolution. The window of a state may have gone on to
+    /// nodes that leave or yield: see [`Self::fields_at`]. No pressure is negative: tension within the error of a
+    /// state, as on a node that has just touched, is zero.
     ///
     /// # Errors
     ///
-    /// [`Error::NotOnPath`] for more tension than that; those of the updater.
+    /// [`Error::NotOnPath`] for more tension than that; those of [`Self::fields_at`].
     pub fn fields(&mut self) -> Result<ContactFields, Error> {
         let pressure = self.solved()?;
         self.fields_under(pressure, self.state)
@@ -79,15 +80,15 @@ impl LoadingPath {
     /// that [`History`](super::History) has read.
     ///
     /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node that
-    /// *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in contact.
-    /// Without a factor a state costs a solution; so does one before the last node that *yielded*, in as much memory
+    /// *left* the contact or *yielded* are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
+    /// contact. Without a factor a state costs a solution; one before the last node that yielded, in as much memory
     /// again as iterations take.
     ///
     /// # Errors
     ///
     /// [`Error::StateNotReached`] if the state lies beyond the present one; [`Error::NotOnPath`] if it is not
-    /// a state of this path; those of the updater; before the last node that left,
-    /// [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
+    /// a state of this path; those of the updater; before the last node that left or
+    /// yielded, [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
     pub fn fields_at(&mut self, state: &LoadingState) -> Result<ContactFields, Error> {
         let pressure = self.solved_at(state)?;
         self.fields_under(pressure, Some(*state))

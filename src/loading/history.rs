@@ -186,8 +186,8 @@ impl History {
         state.ok_or(Error::OutOfRange { quantity, value, expected })
     }
 
-    /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended
-    /// in full contact can be read, as far as all of a state is finite.
+    /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended in full contact
+    /// can be read, with a hardness if all nodes have yielded, as far as all of a state is finite.
     #[must_use]
     pub fn at_load(&self, load: f64) -> Option<LoadingState> {
         let after = self.states.partition_point(|state| state.contact.load <= load);

@@ -10,7 +10,7 @@ use crate::{Error, Grid};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum LoadingEnd {
-    /// All nodes are in contact: from here on everything is linear in the load. With a hardness only if that of the
+    /// All nodes are in contact, and from here on everything is linear in the load. With a hardness only if that of the
     /// nodes that have not yielded is infinite.
     FullContact,
     /// All nodes have yielded: the load is the hardness times the nominal area, and cannot grow.
@@ -21,9 +21,9 @@ pub enum LoadingEnd {
     Approach,
     /// The least mean gap; the last state is at exactly this mean gap.
     MeanGap,
-    /// One more node would exceed the greatest contact area fraction.
+    /// One more node would exceed the greatest contact area fraction, or the next event is a yield.
     AreaFraction,
-    /// One more node would exceed the greatest number of nodes.
+    /// One more node would exceed the greatest number of nodes, or the next event is a yield.
     Nodes,
     /// One more node would exceed the memory budget; the last item was the error that says so.
     Memory,

@@ -56,8 +56,11 @@ impl LoadingPath {
             return Err(Error::CannotContinue { steps: self.state.map_or(0, |state| state.step) });
         }
         let mut limits = Limits::default();
-        let problem = &self.run.problem;
+        let problem = self.run.surface();
         limits.set(target, &problem.grid(), problem.mean_gap())?;
+        if let Some(plastic) = &self.run.plastic {
+            limits.check_hardness(plastic.hardness(), &problem.grid())?;
+        }
         if let Some(state) = &self.state {
             limits.check_ahead(state, true)?;
         }
@@ -118,6 +121,7 @@ impl LoadingPath {
         };
         if !is_enough && phase.hand_over(run, end)? {
             self.handed_over_at = Some(run.contact.len());
+            self.exact.give_up();
         }
         let stop = phase.stop(run, end);
         let may_leave = run.may_leave();
@@ -224,7 +228,7 @@ impl LoadingPath {
     }
 
     /// Number of elastic nodes in contact when the factor of [`Handover`](crate::updater::Handover) was given up,
-    /// `None` while it is in use.
+    /// `None` while it is in use, or if a resumed path never had one.
     #[must_use]
     pub fn handed_over_at(&self) -> Option<usize> {
         self.handed_over_at

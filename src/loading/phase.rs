@@ -1,7 +1,5 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
-use std::any::Any;
-
 use super::estimated::resumed::EstimatedEnd;
 use super::event_cost::{Rest, greatest_factor};
 use super::factor_log::FactorLog;
@@ -12,7 +10,7 @@ use super::window::Window;
 use crate::contact::ContactSequence;
 use crate::updater::{
     ConjugateGradient, Handover, Iterations, Left, LinearUpdater, RecursiveCholesky, Solution,
-    WindowFactor, join_all,
+    WindowFactor, innermost, join_all,
 };
 use crate::{Error, Problem};
 
@@ -31,10 +29,7 @@ impl Phase {
     /// whether it may end, if that is not for the updater to say.
     pub(super) fn new(updater: impl LinearUpdater, hand_over: Option<bool>) -> Self {
         let updater: Box<dyn LinearUpdater> = Box::new(updater);
-        let mut own: &dyn Any = &*updater;
-        while let Some(boxed) = own.downcast_ref::<Box<dyn LinearUpdater>>() {
-            own = &**boxed;
-        }
+        let own = innermost(&*updater);
         if let Some(iterations) = own.downcast_ref::<ConjugateGradient>() {
             return Self::Iterations(Box::new(iterations.clone()));
         }

@@ -44,20 +44,23 @@ impl Displaced {
 impl Plastic {
     /// None yet. Returns the problem of the elastic nodes as well.
     pub(super) fn new(hardness: Hardness, problem: Problem) -> (Self, Problem) {
-        let nodes = problem.grid().nodes();
+        let none = Self::none(Arc::new(hardness), Arc::new(problem));
+        let elastic = none.elastic(&none.surface, &none.displaced);
+        (none, elastic)
+    }
+
+    fn none(hardness: Arc<Hardness>, surface: Arc<Problem>) -> Self {
+        let nodes = surface.grid().nodes();
         let nothing = vec![0.0; nodes];
-        let elastic = problem.under_load(&nothing, &nothing);
-        let has_yielded = vec![false; nodes];
-        let none = Self {
-            hardness: Arc::new(hardness),
-            surface: Arc::new(problem),
-            has_yielded,
+        Self {
+            hardness,
+            surface,
+            has_yielded: vec![false; nodes],
             count: 0,
             groups: Vec::new(),
             sum: 0.0,
             displaced: Displaced { load: nothing.clone(), unit: nothing },
-        };
-        (none, elastic)
+        }
     }
 
     /// Bytes on a grid.
@@ -176,16 +179,7 @@ impl Plastic {
     /// The same when these nodes and no others have yielded, and the problem of the elastic ones.
     pub(super) fn beside(&self, yielded: &[usize]) -> Result<(Self, Problem), Error> {
         let displaced = self.displaced(yielded)?;
-        let nothing = vec![0.0; self.has_yielded.len()];
-        let none = Self {
-            hardness: Arc::clone(&self.hardness),
-            surface: Arc::clone(&self.surface),
-            has_yielded: vec![false; nothing.len()],
-            count: 0,
-            groups: Vec::new(),
-            sum: 0.0,
-            displaced: Displaced { load: nothing.clone(), unit: nothing },
-        };
+        let none = Self::none(Arc::clone(&self.hardness), Arc::clone(&self.surface));
         Ok((none.grown(yielded, &displaced), self.elastic(&self.surface, &displaced)))
     }
 }

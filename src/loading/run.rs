@@ -22,8 +22,8 @@ use crate::{Boundary, ContactGrowth, Error, Grid, Problem, UpdaterError};
 pub struct LoadingTimings {
     /// Number of windows.
     pub windows: usize,
-    /// Number of events that were computed and then taken back, because a state did not stand the check at
-    /// the end of its window.
+    /// With a factor how many events were computed and then taken back, because a state did not stand the check at the
+    /// end of its window; without one how many windows.
     pub taken_back: usize,
     /// Number of solutions inside windows, to settle the order of events that were too close to be told
     /// apart otherwise.
@@ -343,22 +343,6 @@ impl LoadingRun {
         })
     }
 
-    /// Puts the nodes of the contact behind the first `count` into another order.
-    pub(super) fn rearrange(&mut self, count: usize, order: &[usize]) -> Result<(), Error> {
-        let before = self.contact.order()[count..].to_vec();
-        if before == order {
-            return Ok(());
-        }
-        let place = |node: &usize| before.iter().position(|other| other == node);
-        let places: Vec<usize> = order.iter().filter_map(place).collect();
-        self.contact.truncate(count);
-        for &node in order {
-            self.contact.push(node)?;
-        }
-        self.field.rearrange(&self.contact, count, &places);
-        Ok(())
-    }
-
     /// Puts the node that left last back to where it was. What the updater holds is another contact.
     pub(super) fn take_back_release(&mut self) -> Result<(), Error> {
         match self.releases.pop() {
@@ -413,6 +397,11 @@ impl LoadingRun {
             + ContactSequence::bytes_on(grid)
             + Problem::bytes_on(grid, boundary)
             + GapField::bytes_on(grid, boundary)
+    }
+
+    /// Bytes that it holds besides where nodes may leave: the touches of single nodes, and gaps at the start of a window.
+    pub(super) fn bytes_where_nodes_leave(grid: &Grid) -> usize {
+        grid.nodes() * (size_of::<(f64, usize)>() + size_of::<(usize, GapLine)>())
     }
 
     /// The greatest window up to `size` that stays within the memory budget beside an updater.

@@ -196,6 +196,8 @@ impl LoadingPath {
         }
         if let NextWindow::Factor(end) = &end.next {
             self.exact.follow_on(&end.log, end.solution.is_some());
+            // Events of a factor are exact but for what was inherited.
+            self.single.inherit(front.approach_error);
             if let Some(solution) = &end.solution {
                 let approach = run.scalars.approach();
                 run.field.place(&run.contact, solution.clone(), approach)?;

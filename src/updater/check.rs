@@ -1,9 +1,8 @@
 //! Holds an updater to what a path asks of it.
 
-use std::any::Any;
-
 use super::{
     ConjugateGradient, Dense, Iterations, Left, LinearUpdater, Schur, Solution, WindowFactor,
+    innermost,
 };
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
@@ -249,8 +248,7 @@ impl Examiner<'_> {
 
 /// Greatest errors of the answers of an updater.
 fn tolerance(updater: &dyn LinearUpdater) -> f64 {
-    let own: &dyn Any = updater;
-    match own.downcast_ref::<ConjugateGradient>() {
+    match innermost(updater).downcast_ref::<ConjugateGradient>() {
         Some(iterations) => TOLERANCE.max(LOST * iterations.tolerance()),
         None => TOLERANCE,
     }
@@ -303,6 +301,17 @@ mod tests {
             assert!(report.truncates && report.releases && report.yields, "{name}: {report:?}");
             assert!(report.contact_nodes > 100, "{name}: {report:?}");
         }
+        Ok(())
+    }
+
+    /// What an updater is held to does not depend on the boxes around it.
+    #[test]
+    fn boxes_are_looked_into() -> Result<(), Error> {
+        let coarse = ConjugateGradient::with_tolerance(1e-6)?;
+        let mut boxed: Box<dyn LinearUpdater> =
+            Box::new(Box::new(coarse) as Box<dyn LinearUpdater>);
+        assert_eq!(tolerance(&boxed), LOST * 1e-6);
+        check(&mut boxed, &problem()?)?;
         Ok(())
     }
 

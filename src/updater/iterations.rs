@@ -57,8 +57,11 @@ pub(crate) struct Proposal {
     pub(crate) lines: Vec<[f64; 2]>,
     /// What a pressure on a node out of contact, or a gap of one in it, adds to sums over all nodes: of gaps out of
     /// contact, of plastic depths, and of these times the hardness.
-    pub(crate) sums: Vec<[f64; 3]>,
+    pub(crate) sums: Vec<[f64; SUMS]>,
 }
+
+/// Sums over all nodes: of gaps out of contact, of plastic depths, and of these times the hardness.
+pub(crate) const SUMS: usize = 3;
 
 /// Iterations on a contact that grows.
 pub(crate) trait Iterations: Debug + Send + Sync {

@@ -19,8 +19,8 @@ pub(crate) struct Kept {
     /// Pressures \[Pa\], and their rates.
     pub load: KeptField,
     pub rate: KeptField,
-    /// The nodes that were proposed last, how many were in contact then, and what that left of their row sums: with
-    /// them the path follows row sums, and improves solutions.
+    /// The nodes that were proposed last, how many of those in contact then are left, and what that left of their row
+    /// sums: with them the path follows row sums, and improves solutions.
     pub proposed: Vec<usize>,
     pub proposed_beside: usize,
     pub row_sums: Vec<f64>,

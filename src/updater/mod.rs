@@ -37,7 +37,7 @@ pub use cholesky::RecursiveCholesky;
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;
-pub(crate) use iterations::{Behind, Beside, Iterations, Proposal, Solved};
+pub(crate) use iterations::{Behind, Beside, Iterations, Proposal, SUMS, Solved};
 pub(crate) use join::join_all;
 pub(crate) use kept::{Kept, KeptBeside, KeptField};
 pub use schur::Schur;
@@ -211,7 +211,8 @@ pub trait LinearUpdater: Any + Send + Sync {
     ) -> Result<(), Error>;
 
     /// Forgets the last nodes: `contact` has been cut. Called only if the end of a window contradicts its
-    /// last events, which takes a kernel whose growth is not convex, or if the updater could not let them join.
+    /// last events, which takes a hardness or a kernel whose growth is not convex, or not as it states, or if the
+    /// updater could not let them join.
     ///
     /// # Errors
     ///
@@ -224,7 +225,8 @@ pub trait LinearUpdater: Any + Send + Sync {
 
     /// Forgets nodes that left the contact, by their positions in it, ascending: `contact` is without them already, and
     /// initial gap and row sums of `problem` may be others than before. No node is watched afterwards. Called only if a
-    /// pressure falls to zero, which takes a kernel of unknown growth, or rises to a hardness.
+    /// pressure falls to zero, which takes a kernel of unknown growth, or rises to a hardness: then also with none of
+    /// its nodes, where only others yield and the problem has changed.
     ///
     /// # Errors
     ///
@@ -417,6 +419,15 @@ impl LinearUpdater for Box<dyn LinearUpdater> {
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         (**self).bytes(contact, watched)
     }
+}
+
+/// What an updater is, without the boxes around it.
+pub(crate) fn innermost(updater: &dyn LinearUpdater) -> &dyn Any {
+    let mut own: &dyn Any = updater;
+    while let Some(boxed) = own.downcast_ref::<Box<dyn LinearUpdater>>() {
+        own = &**boxed;
+    }
+    own
 }
 
 /// `Ok` if an updater that holds `held` nodes is asked about a contact of `found`.

@@ -118,3 +118,18 @@ fn stiffnesses_among_nodes_that_touch_at_once_are_those_of_the_factor() {
         }
     }
 }
+
+/// A window of as many nodes as there are numbers is one of all nodes.
+#[test]
+fn windows_of_any_size_hold_all_nodes() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let flat = FlatPunch::new(0.0).unwrap();
+    for window in [usize::MAX, usize::MAX / 3 + 1, 256] {
+        let builder = LoadingSolver::builder(&flat, &kernel).window_size(window);
+        let exact: Vec<_> = builder.clone().build().unwrap().map(Result::unwrap).collect();
+        let path = builder.updater(ConjugateGradient::new()).build().unwrap();
+        let found: Vec<_> = path.map(Result::unwrap).collect();
+        assert_eq!([exact.len(), found.len()], [256; 2], "{window}");
+    }
+}

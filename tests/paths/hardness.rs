@@ -616,6 +616,15 @@ fn what_makes_no_sense_is_refused() {
         let built = builder().hardness(HARDNESS).max_load(load).build();
         assert_eq!(matches!(built, Err(Error::BeyondHardness { .. })), is_refused, "{load}");
     }
+    // Nor does a path go on to such a load, and it stays as it is.
+    let mut path = builder().hardness(HARDNESS).max_nodes(3).build().unwrap();
+    path.run().unwrap();
+    for load in [most, 2.0 * most] {
+        let refused = path.continue_to(ContactTarget::Load(load));
+        assert!(matches!(refused, Err(Error::BeyondHardness { .. })), "{load}: {refused:?}");
+        assert_eq!(path.end(), Some(LoadingEnd::Nodes));
+    }
+    path.continue_to(ContactTarget::Load(0.999 * most)).unwrap();
     let unknown = KernelTable::new(&**kernel).unwrap();
     let coefficient = |di, dj| unknown.coefficient(di, dj).unwrap_or_default();
     let unknown =

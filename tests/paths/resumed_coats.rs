@@ -149,6 +149,19 @@ fn another_updater_goes_on_from_what_states_say() {
         let at = &at[..at.len().min(4)];
         goes_on(&format!("{name}: iterative, closer"), &other, (&found, &exact), at);
         goes_on(&format!("{name}: factor, iterative"), &iterative, (&exact, &exact), at);
+        // What that path keeps goes on as itself.
+        for &at in &at[..at.len().min(4)] {
+            let begun: History = found[..at].iter().copied().collect();
+            let rest = whole_of(cholesky.clone().resume(&begun).unwrap());
+            for more in 1..rest.len().min(12) {
+                let mut path = cholesky.clone().resume(&begun).unwrap();
+                path.by_ref().take(more).for_each(|state| assert!(state.is_ok()));
+                let states = found[..at].iter().chain(&rest[..more]).copied().collect();
+                let record = LoadingRecord::new(&path, states).unwrap();
+                let resumed = cholesky.clone().resume(record.history()).unwrap();
+                identical(at + more, &whole_of(resumed), &rest[more..]);
+            }
+        }
         // A record knows where a window ended; a factor begins there anew.
         let mut path = iterative.build().unwrap();
         let history: History = path.by_ref().take(at[0]).collect::<Result<_, _>>().unwrap();

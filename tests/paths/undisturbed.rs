@@ -1,21 +1,14 @@
 //! Questions in between do not change a bit of the path.
 
 use crate::problems::{grid, kernels, rough};
+use asperity::loading::LoadingBuilder;
 use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
-use asperity::{InfluenceKernel, LoadingSolver, Surface};
+use asperity::{ContactGrowth, LoadingSolver};
 
 /// The same path twice, once with every question at every third state.
-fn undisturbed<U: LinearUpdater + Clone>(
-    surface: &dyn Surface,
-    kernel: &dyn InfluenceKernel,
-    updater: U,
-    context: &str,
-) {
+fn undisturbed<U: LinearUpdater + Clone>(builder: &LoadingBuilder<'_, U>, context: &str) {
     for window in [1, 7, 40] {
-        let builder = LoadingSolver::builder(surface, kernel)
-            .updater(updater.clone())
-            .max_area_fraction(0.5)
-            .window_size(window);
+        let builder = builder.clone().window_size(window);
         let expected = builder.clone().build().unwrap();
         let expected: Vec<_> = expected.map(Result::unwrap).collect();
         let mut path = builder.build().unwrap();
@@ -39,7 +32,25 @@ fn undisturbed<U: LinearUpdater + Clone>(
 fn everywhere<U: LinearUpdater + Clone>(updater: U, context: &str) {
     let surface = rough(&grid(), 11);
     for (name, kernel) in kernels(grid()) {
-        undisturbed(&surface, &kernel, updater.clone(), &format!("{context}, {name}"));
+        let builder = LoadingSolver::builder(&surface, &kernel).updater(updater.clone());
+        let builder = builder.max_area_fraction(0.5);
+        undisturbed(&builder, &format!("{context}, {name}"));
+        if kernel.contact_growth() != ContactGrowth::Unknown {
+            let load = builder
+                .clone()
+                .build()
+                .unwrap()
+                .run()
+                .unwrap()
+                .states()
+                .last()
+                .unwrap()
+                .contact
+                .load;
+            // Half of the pressure that the nodes in contact bear on average: most of them yield.
+            let hardness = load / grid().nominal_area();
+            undisturbed(&builder.hardness(hardness), &format!("{context}, {name}, hardness"));
+        }
     }
 }
 
@@ -57,7 +68,9 @@ fn by_questions_to_iterations() {
 fn by_questions_to_others() {
     everywhere(Handover::new(), "handover");
     let surface = rough(&grid(), 11);
-    undisturbed(&surface, &kernels(grid())[0].1, Dense::new(), "dense");
+    let kernel = &kernels(grid())[0].1;
+    let builder = LoadingSolver::builder(&surface, kernel).updater(Dense::new());
+    undisturbed(&builder.max_area_fraction(0.5), "dense");
 }
 
 /// Nor to a factor that hands over on the way.

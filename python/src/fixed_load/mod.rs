@@ -71,7 +71,7 @@ fn solver(
 /// max_iterations : int
 ///     Steps of conjugate gradients after which to give up.
 /// memory_budget : int, optional
-///     Bytes that may be held; three quarters of the memory of the machine unless it is given (Linux).
+///     Bytes that may be held; three quarters of what the process may use unless it is given (Linux).
 /// check : bool
 ///     Warn of a surface, a modulus, layers or a contact that look wrong.
 ///

@@ -50,7 +50,7 @@ const ADHESION_BY_ITERATIONS: &str =
 /// window_size : int, optional
 ///     Nodes to watch at a time; chosen by itself.
 /// memory_budget : int, optional
-///     Bytes that the path may hold; three quarters of the memory of the machine unless it is given (Linux).
+///     Bytes that the path may hold; three quarters of what the process may use unless it is given (Linux).
 /// check : bool
 ///     Warn of a surface, a modulus or layers that look wrong.
 ///

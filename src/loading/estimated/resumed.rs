@@ -102,11 +102,11 @@ impl Estimated {
             return run.advance_field(iterations, approach, f64::INFINITY);
         }
         self.joined.clone_from(&end.joined);
-        let order = run.contact.order().to_vec();
-        run.contact = end.contact(&run.contact)?;
-        let count = order.len() - end.joined.len();
+        let solved = end.contact(&run.contact)?;
+        let ordered = std::mem::replace(&mut run.contact, solved);
         run.advance_field(iterations, approach, self.rate_span)?;
-        run.rearrange(count, &order[count..])?;
+        run.field.reorder(&run.contact, &ordered);
+        run.contact = ordered;
         run.scalars.place_at(approach);
         let tolerances = WindowTolerances::of(run, iterations.tolerance());
         self.survey(run, &tolerances)

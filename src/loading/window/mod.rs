@@ -10,7 +10,7 @@ use super::gap_field::GapLine;
 use super::scalars::Rates;
 use super::state::ContactEvent;
 use super::tuning::{BORDERED, EXACT_TIE};
-use crate::updater::{Schur, WindowFactor};
+use crate::updater::{SUMS, Schur, WindowFactor};
 pub(super) use course::Course;
 
 /// A node to watch.
@@ -64,8 +64,6 @@ impl Watched {
         }
     }
 }
-
-pub(super) const SUMS: usize = 3;
 
 /// What happens to a watched node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -532,10 +530,13 @@ impl Window {
 
     /// Forgets all but the first events, of which none has joined: their nodes stay watched.
     pub(super) fn take_back(&mut self, events: usize) {
-        for event in self.events.iter().skip(events) {
-            self.rows[event.position].is_open = true;
-        }
+        let taken_back: Vec<usize> =
+            self.events.iter().skip(events).map(|event| event.position).collect();
         self.truncate(events);
+        for position in taken_back {
+            let has_happened = self.events.iter().any(|event| event.position == position);
+            self.rows[position].is_open = !has_happened;
+        }
     }
 
     /// Forgets all but the first events. The nodes of the others are not watched any more.

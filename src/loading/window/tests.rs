@@ -276,6 +276,19 @@ fn both_kinds_of_events() -> Result<(), crate::Error> {
     Ok(())
 }
 
+/// Nodes 7 and 8 touch and yield in turn. Those to which nothing is left to have happened stay watched.
+#[test]
+fn what_is_taken_back_stays_watched() -> Result<(), crate::Error> {
+    for (stand, watched) in [(4, &[][..]), (3, &[]), (2, &[8]), (1, &[8]), (0, &[7, 8])] {
+        let mut window = two([0.75; 2], f64::INFINITY)?;
+        assert_eq!(window.play(4), None);
+        window.take_back(stand);
+        assert_eq!(window.events().len(), stand);
+        assert_eq!(window.untouched().collect::<Vec<_>>(), watched, "{stand}");
+    }
+    Ok(())
+}
+
 /// Until a horizon, though the first event always counts; not beyond so many that touch; and an infinite hardness is
 /// never reached.
 #[test]

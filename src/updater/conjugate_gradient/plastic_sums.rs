@@ -9,11 +9,8 @@ use super::solver::Solver;
 use super::tuning::SUMS_TOLERANCE;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, Equation, Field, greatest};
-use crate::updater::iterations::Beside;
+use crate::updater::iterations::{Beside, SUMS};
 use crate::{Error, Problem};
-
-/// Sums of the gaps out of contact, of plastic depths, and of these times the hardness.
-pub(super) const SUMS: usize = 3;
 
 /// `C_II⁻¹ b` on the contact I for each right-hand side b: the row sums of the nodes that have not yielded, the
 /// displacement under a pressure of 1 on those that have, and the one under their hardness. C is symmetric, so that bᵀp

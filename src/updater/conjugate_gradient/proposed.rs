@@ -235,11 +235,11 @@ impl Proposed {
         let mut changes: Vec<[f64; 2]> = unknown.iter().map(left).collect();
         factor.solve_both(&mut changes);
         let count = contact.len() - change.joined.len();
-        let in_contact =
-            if self.outside < self.locals.len() { contact.places() } else { Vec::new() };
-        let position = |(place, local): (usize, &Local)| match self.is_outside(place) {
-            true => change.joined.iter().position(|&node| node == local.node).map(|k| count + k),
-            false => in_contact[local.node],
+        // The contact may have been put into another order since.
+        let in_contact = contact.places();
+        let position = |(place, local): (usize, &Local)| {
+            let has_place = !self.is_outside(place) || change.joined.contains(&local.node);
+            in_contact[local.node].filter(|_| has_place)
         };
         let positions: Vec<Option<usize>> = self.locals.iter().enumerate().map(position).collect();
         let Solved { solution, displacement } = solved;

@@ -134,6 +134,30 @@ fn residuals_improve_displacements() -> Result<(), Error> {
     Ok(())
 }
 
+/// Nodes 3 and 1 have joined in this order, and the contact has been put into another one since: what changes is found
+/// by node.
+#[test]
+fn improvements_follow_a_contact_into_another_order() -> Result<(), Error> {
+    let (problem, proposed) = proposed()?;
+    let improved = |order: [usize; 4]| -> Result<Vec<f64>, Error> {
+        let contact = ContactSequence::with_order(problem.grid(), order)?;
+        let mut found = Solved {
+            solution: Solution { pressure: vec![0.0; 4], rate: vec![0.0; 4] },
+            displacement: [vec![0.0; 5], vec![0.0; 5]],
+        };
+        let change = Change { joined: &[3, 1], fixed: &[] };
+        proposed.improve(&problem, &contact, &solved(4), change, &mut found);
+        let Solution { pressure, rate } = found.solution;
+        let places = contact.places();
+        let of_nodes = [0, 2, 1, 3].map(|node| places[node].map(|k| [pressure[k], rate[k]]));
+        Ok(of_nodes.into_iter().flatten().flatten().collect())
+    };
+    let found = improved([0, 2, 1, 3])?;
+    assert!(found[4..].iter().all(|value| value.abs() > 1e-3), "{found:?}");
+    near(&found, &improved([0, 2, 3, 1])?);
+    Ok(())
+}
+
 /// Of node 1, which has joined, 1 − 3/16 is left, so that its pressure changes by 13/16 over 3.5, and the displacement
 /// of node 3 by 1/16 and −1/4 of that. Of rates it is 1/2 − 5/16, and 1/4.
 #[test]
