@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use asperity::ContactTarget;
+use asperity::contact::ContactState;
+use asperity::{ContactTarget, LoadingState};
 use asperity_cli::number::{area, quantity};
 use asperity_cli::outcome::Failure;
 
@@ -13,7 +14,7 @@ use crate::values::{AREA, FORCE, PRESSURE, SHARE, any_of};
 const DIGITS: usize = 9;
 
 /// A state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(crate) enum At {
     /// Under a load \[N\].
     Load(f64),
@@ -33,6 +34,17 @@ impl At {
             Self::MeanPressure(pressure) => ContactTarget::Load(pressure * nominal_area),
             Self::Area(area) => ContactTarget::AreaFraction(area / nominal_area),
             Self::AreaFraction(fraction) => ContactTarget::AreaFraction(fraction),
+        }
+    }
+
+    /// The same of a state, by what this one is known by.
+    pub(crate) fn of_same_kind(self, state: &LoadingState, nominal_area: f64) -> Self {
+        let ContactState { load, contact_area, contact_area_fraction, .. } = state.contact;
+        match self {
+            Self::Load(_) => Self::Load(load),
+            Self::MeanPressure(_) => Self::MeanPressure(load / nominal_area),
+            Self::Area(_) => Self::Area(contact_area),
+            Self::AreaFraction(_) => Self::AreaFraction(contact_area_fraction),
         }
     }
 
@@ -62,6 +74,11 @@ impl At {
         };
         let targets = all.iter().map(|at| at.target(nominal_area));
         targets.max_by(|one, other| size(one).total_cmp(&size(other)))
+    }
+
+    /// Whether it comes behind a state that is known by the same.
+    pub(crate) fn is_beyond(self, end: Self) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&end) && self > end
     }
 
     /// Whether it is a contact area.

@@ -38,7 +38,7 @@ pub(crate) struct Elasticity {
     layer: Vec<LayerArgument>,
 
     /// What the layers are bonded to: rigid, or an elastic half-space
-    #[arg(long, value_name = "rigid|NAME|E,NU", requires = "layer", help_heading = "Bodies")]
+    #[arg(long, value_name = "rigid|NAME|E,NU", requires = "layer", conflicts_with_all = ["e_star", "material"], help_heading = "Bodies")]
     base: Option<BaseArgument>,
 }
 

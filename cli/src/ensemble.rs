@@ -18,7 +18,7 @@ pub(crate) struct Ensemble {
     pub(crate) seeds: Option<Seeds>,
 
     /// Only the K-th of N equal shares of the seeds, for job arrays; K counts from 0 or from 1
-    #[arg(long, value_name = "K/N", requires = "seeds", help_heading = "Many surfaces")]
+    #[arg(long, value_name = "K/N", requires = "seeds", conflicts_with_all = ["surface", "seed", "resume", "record"], help_heading = "Many surfaces")]
     task: Option<Task>,
 }
 

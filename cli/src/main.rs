@@ -75,7 +75,7 @@ struct Arguments {
     )]
     units: Units,
 
-    /// Format of charts, png or svg [default: svg for loading_curve, png for the others]; maps are PNG
+    /// Format of charts, png or svg [default: svg for loading_curve and unloading, else png]; maps are PNG
     #[arg(long, global = true, value_name = "png|svg", value_parser = ChartFormat::parse)]
     charts: Option<ChartFormat>,
 

@@ -151,3 +151,21 @@ fn after_a_kill() -> Done {
     }
     Ok(())
 }
+
+/// Two runs do not write into one folder at once: the second one is refused, and the first one's table is whole.
+#[test]
+fn a_folder_is_of_one_run() -> Done {
+    let folder = Scratch::new("one-run")?;
+    fs::create_dir(folder.join("out"))?;
+    let part = folder.join("out/path.csv.part");
+    let other = fs::File::create(&part)?;
+    other.lock()?;
+    let line = "path --nodes 12 --max-area-fraction 0.1";
+    let done = asperity(&folder.0, &words(line)).output()?;
+    assert_eq!(done.status.code(), Some(1), "{}", said(&done));
+    assert!(said(&done).contains("give another --out"), "{}", said(&done));
+    drop(other);
+    run(&folder.0, line)?;
+    assert!(folder.join("out/path.csv").exists() && !part.exists());
+    Ok(())
+}

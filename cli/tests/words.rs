@@ -204,9 +204,18 @@ fn states_are_asked_for() -> Done {
     assert_eq!(found["at"][0]["contact_area_fraction"].as_f64(), Some(102.0 / 1024.0));
     assert_eq!(found["at"][1]["load"].as_f64(), Some(500.0));
     is_refused(&output(&folder.0, &format!("{path} 10%,5MPa"))?, &["say where the path ends"]);
-    let beyond = format!("{path} 5MPa,500MPa --mean-pressure 50MPa --out beyond");
-    is_refused(&output(&folder.0, &beyond)?, &["the path has no state at 500 MPa"]);
+    let beyond = format!("{path} 5MPa,50GPa --max-area-fraction 20% --out beyond");
+    is_refused(&output(&folder.0, &beyond)?, &["the path has no state at 50 GPa: it ends at "]);
     assert!(folder.join("beyond/contact_map_5MPa.png").exists());
+    // What is known before is said before.
+    for (at, end, words) in [
+        ("5MPa,500MPa", "--mean-pressure 50MPa", "--at 500 MPa is beyond --mean-pressure 50 MPa"),
+        ("5N", "--max-load 4N", "--at 5 N is beyond --max-load 4 N"),
+        ("10%,30%", "--max-area-fraction 0.2", "--at 30 % is beyond --max-area-fraction 20 %"),
+    ] {
+        is_refused(&output(&folder.0, &format!("{path} {at} {end} --out none"))?, &[words]);
+        assert!(!folder.join("none").exists());
+    }
     Ok(())
 }
 

@@ -209,7 +209,7 @@ impl History {
     /// Raises
     /// ------
     /// AsperityError
-    ///     For what lies outside the path.
+    ///     For what lies outside the path, and where states between the first and the last have been left out.
     #[pyo3(signature = (*, load=None, mean_pressure=None, approach=None, area_fraction=None, mean_gap=None))]
     fn at(
         &self,
@@ -220,6 +220,14 @@ impl History {
         mean_gap: Option<f64>,
     ) -> Fallible<State> {
         let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
+        let gap = self.states().windows(2).find(|pair| pair[1].step > pair[0].step + 1);
+        if let Some([before, after]) = gap {
+            return Err(Failure::arguments(format!(
+                "between states, `at` needs all of them: {} to {} are left out of this history",
+                before.step + 1,
+                after.step - 1
+            )));
+        }
         Ok(State::new(self.history.at(targets.only(&self.setting.grid)?)?))
     }
 

@@ -423,6 +423,9 @@ def test_slices_of_a_history(free_surface: asp.Surface, unit_half_space: asp.Hal
     # What follows nodes from state to state says so; what is made of increments takes fewer of them.
     with pytest.raises(asp.AsperityError, match="left out"):
         asp.patches(every)
+    with pytest.raises(asp.AsperityError, match="2 to 4 are left out"):
+        every.at(load=history.load[10])
+    assert history[30:].at(load=history.load[40]) == history.at(load=history.load[40])
     assert np.isnan(every.corrected_area).all() and len(every.columns()["corrected_area"]) == 15
     np.testing.assert_array_equal(history[:30].corrected_area, history.corrected_area[:30])
     assert asp.patches(history[:30]).number.tolist() == asp.patches(history).number[:30].tolist()

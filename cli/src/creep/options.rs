@@ -7,13 +7,13 @@ use clap::Args;
 
 use crate::leak::PerhapsFluid;
 use crate::path::fields::Format;
-use crate::values::{FORCE, LENGTH, TIME, number};
+use crate::values::{FORCE, LENGTH, SHARE, TIME};
 
 /// Contact of viscoelastic bodies over time, from a recorded path: creep under a load, relaxation at an approach, any
 /// history
 ///
 /// The bodies relax as E(t)/E0 = 1 - sum of g (1 - exp(-t/tau)), E0 being the modulus E* of the path. While the
-/// effective load grows, everything is in closed form from the path. Where contact recedes the bed of the path is
+/// effective load grows, everything is in closed form from the path. Where contact recedes the contact is
 /// stepped in time, and the remaining error of the steps is measured and printed. Writes creep.csv (time,
 /// effective_load, load, approach, contact_area_fraction, mean_gap), creep.png (area, mean gap and load over time, with
 /// the times at which the contact percolates and its last channel closes), touch_times.png (when each node touched),
@@ -57,7 +57,7 @@ pub(crate) struct Options {
 
     /// Amplitude of the load cycles around --load whose lost energy is drawn against frequency [default: a fifth of
     /// --load]
-    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), requires = "load")]
+    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), requires = "load", conflicts_with_all = ["approach", "history"])]
     pub(super) cycle_amplitude: Option<f64>,
 
     /// Nodes that share only a corner belong to one patch too; channels pass through sides of cells either way
@@ -96,7 +96,7 @@ impl Options {
 /// A term of the series.
 fn term(text: &str) -> Result<(f64, f64), String> {
     let (time, share) = text.split_once(',').ok_or("a term is TAU,G: a time and a part")?;
-    let (time, share) = (TIME.positive()(time)?, number(share)?);
+    let (time, share) = (TIME.positive()(time)?, SHARE.not_negative()(share)?);
     if (0.0..=1.0).contains(&share) {
         Ok((time, share))
     } else {
@@ -113,6 +113,7 @@ mod tests {
         assert_eq!(term("0.1,0.5"), Ok((0.1, 0.5)));
         assert_eq!(term("1e3, 1"), Ok((1e3, 1.0)));
         assert_eq!(term("2h,0.5"), Ok((7200.0, 0.5)));
+        assert_eq!(term("2h,50%"), Ok((7200.0, 0.5)));
         for bad in
             ["", "1", "1;2", "0,0.5", "-1,0.5", "1,-0.1", "1,1.1", "1,nan", "inf,0.5", "1,2,3"]
         {

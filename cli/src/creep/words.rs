@@ -87,7 +87,7 @@ fn method(followed: &Followed) {
     match (followed.method, followed.recedes) {
         (Method::Steps { count, halvings, error }, Some(recedes)) => {
             say!(
-                "contact    recedes from t = {} on: the bed of the path is stepped in time",
+                "contact    recedes from t = {} on: the contact is stepped in time",
                 units::time(recedes)
             );
             let halved = match halvings {

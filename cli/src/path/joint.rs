@@ -12,7 +12,7 @@ use asperity_cli::units::{self, Units};
 use clap::{Args, ValueEnum};
 
 use crate::conduction::{Conduct, Named};
-use crate::values::{LENGTH, positive};
+use crate::values::{LENGTH, SHARE, positive};
 
 /// The bodies of a joint.
 pub(super) struct Pair<'a> {
@@ -36,8 +36,7 @@ pub(super) struct Joint {
     unresolved_roughness: Option<f64>,
 
     /// Write the laws of the interface for finite elements, per nominal area: pressure over overclosure (what the mean
-    /// gap closes); over the pressure the conductance, if there is one, and with --friction tangential stiffness and
-    /// slip limit
+    /// gap closes); conductance, if there is one, and with --friction tangential stiffness and slip limit over pressure
     #[arg(long, value_enum, value_name = "PROGRAM")]
     fe_table: Option<Program>,
 
@@ -46,7 +45,7 @@ pub(super) struct Joint {
     fe_error: f64,
 
     /// Coefficient of friction for that table
-    #[arg(long, value_name = "MU", value_parser = positive, requires = "fe_table")]
+    #[arg(long, value_name = "MU", value_parser = SHARE.positive(), requires = "fe_table")]
     friction: Option<f64>,
 
     /// Tangential over normal compliance, E*/G* [default: of --material and --against; (2 - ν)/(2 - 2ν) for one of

@@ -1,7 +1,7 @@
 //! A table that is written line by line, as a path is followed.
 
-use std::fs::{self, File};
-use std::io::Write as _;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use asperity_cli::outcome::Failure;
@@ -24,11 +24,19 @@ impl Lines {
     pub(super) fn create(directory: &Path, header: &str) -> Result<Self, Failure> {
         let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
         let begin = || {
-            match fs::remove_file(&name) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
-                _ => {}
+            let output = OpenOptions::new().write(true).create(true).truncate(false).open(&part)?;
+            // On Windows nobody else could read what is locked. Where there are no locks nothing is refused.
+            if cfg!(unix) && matches!(output.try_lock(), Err(TryLockError::WouldBlock)) {
+                return Err(std::io::Error::new(
+                    ErrorKind::ResourceBusy,
+                    "another run is writing into this folder: give another --out",
+                ));
             }
-            File::create(&part)
+            output.set_len(0)?;
+            match fs::remove_file(&name) {
+                Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+                _ => Ok(output),
+            }
         };
         let output = begin().map_err(|error| Failure::writing(&part, error))?;
         Ok(Self { name, part, output, text: format!("{header}\n"), waiting: 0 })

@@ -25,7 +25,13 @@ pub(super) fn reached(
         match history.at(at.target(nominal)) {
             Ok(state) => found.push((at, state)),
             Err(error) if missed.is_ok() => {
-                missed = Err(Failure::new(format!("the path has no state at {at}"), error));
+                let what = format!("the path has no state at {at}");
+                missed = Err(match states.last().map(|last| at.of_same_kind(last, nominal)) {
+                    Some(end) if at.is_beyond(end) => {
+                        Failure::request(format!("{what}: it ends at {end}"))
+                    }
+                    _ => Failure::new(what, error),
+                });
             }
             Err(_) => {}
         }

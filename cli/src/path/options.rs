@@ -57,7 +57,8 @@ pub(crate) struct Options {
     /// File with the heights of the other body, if both are rough: on the same grid, seen from outside like the first.
     /// It is turned over about y, so that both face each other; --fill, --level and what else is said of a file is done
     /// to both
-    #[arg(long, value_name = "FILE", requires = "surface", help_heading = "Bodies")]
+    // clap does not ask for what an option requires beside another one that excludes it: so these are excluded, too.
+    #[arg(long, value_name = "FILE", requires = "surface", conflicts_with_all = ["nodes", "seed", "seeds", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy"], help_heading = "Bodies")]
     pub(super) against_surface: Option<PathBuf>,
 
     /// Turn that surface by 180° in its plane
@@ -190,6 +191,21 @@ impl Ends {
         let loads = self.mean_pressure.or(self.max_load);
         loads.or(self.max_approach).or(self.min_mean_gap).or(self.max_area_fraction).is_none()
     }
+
+    /// `Ok` if no state is known to lie beyond one of them.
+    fn check_at(&self, all: &[At]) -> Result<(), Failure> {
+        let ends = [
+            ("--mean-pressure", self.mean_pressure.map(At::MeanPressure)),
+            ("--max-load", self.max_load.map(At::Load)),
+            ("--max-area-fraction", self.max_area_fraction.map(At::AreaFraction)),
+        ];
+        for (option, end) in ends.iter().filter_map(|(option, end)| Some((option, (*end)?))) {
+            if let Some(at) = all.iter().find(|at| at.is_beyond(end)) {
+                return Err(Failure::request(format!("--at {at} is beyond {option} {end}")));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The tables of a path, be they asked for or not.
@@ -199,6 +215,7 @@ impl Options {
     /// `Ok` if the states that are asked for make sense together, and no surface is replaced.
     pub(super) fn check(&self) -> Result<(), Failure> {
         At::check(&self.at, self.has_open_end())?;
+        self.ends.check_at(&self.at)?;
         let is_left = self.unload && self.sticking.law().is_none();
         let left: &[&str] = if is_left { &RESIDUAL_SURFACES } else { &[] };
         let states = [String::new()].into_iter().chain(self.at.iter().map(|at| at.ending()));
@@ -214,7 +231,16 @@ impl Options {
             }
             check_input(file, &self.out, &written)?;
         }
-        Ok(())
+        // No other file of a path has such a name. A device has any.
+        let is_device = |file: &PathBuf| file.exists() && !file.is_file();
+        let is_record = |file: &PathBuf| file.extension().is_some_and(|end| end == "npz");
+        match self.record.as_ref().filter(|file| !is_device(file) && !is_record(file)) {
+            Some(file) => Err(Failure::request(format!(
+                "--record {}: the name of a record ends with .npz",
+                file.display()
+            ))),
+            None => Ok(()),
+        }
     }
 
     /// Whether no option says where the path ends.

@@ -19,7 +19,7 @@ use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
 use crate::material::Material;
-use crate::values::{FORCE, positive};
+use crate::values::{FORCE, SHARE, positive};
 use history::Sheared;
 use joint::Joint;
 
@@ -42,7 +42,7 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Coefficient of friction
-    #[arg(long, value_name = "MU", value_parser = positive)]
+    #[arg(long, value_name = "MU", value_parser = SHARE.positive())]
     friction: f64,
 
     /// Load that presses the joint [default: that of the last state]
@@ -63,7 +63,12 @@ pub(crate) struct Options {
     material: Option<Material>,
 
     /// The other body [default: rigid]
-    #[arg(long, value_name = "NAME|E,NU", requires = "material")]
+    #[arg(
+        long,
+        value_name = "NAME|E,NU",
+        requires = "material",
+        conflicts_with = "compliance_ratio"
+    )]
     against: Option<Material>,
 
     /// Table of loads and tangential loads, with the columns load,tangential_load: the joint follows straight lines

@@ -20,7 +20,7 @@ use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
 use crate::material::Material;
-use crate::values::{ANGLE, FORCE, LENGTH, PRESSURE, not_negative, poisson};
+use crate::values::{ANGLE, FORCE, LENGTH, PRESSURE, SHARE, poisson};
 use body::Moment;
 
 /// Stress below the surface of a recorded contact: where it is greatest, maps and sections, and the load of first yield
@@ -54,7 +54,7 @@ pub(crate) struct Options {
     material: Option<Material>,
 
     /// The other body [default: rigid]
-    #[arg(long, value_name = "NAME|E,NU", requires = "material")]
+    #[arg(long, value_name = "NAME|E,NU", requires = "material", conflicts_with = "poisson")]
     against: Option<Material>,
 
     /// Yield stress of the body, of layers one for all or one for each from the uppermost to the base: the load at which
@@ -67,7 +67,7 @@ pub(crate) struct Options {
     against_yield_stress: Option<f64>,
 
     /// Coefficient of friction of a contact that slides: tractions of so many times the pressure
-    #[arg(long, value_name = "MU", value_parser = not_negative, default_value_t = 0.0)]
+    #[arg(long, value_name = "MU", value_parser = SHARE.not_negative(), default_value_t = 0.0)]
     friction: f64,
 
     /// Direction of sliding in degrees from x towards y: that in which the other body moves over this one
@@ -110,7 +110,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
     let mut moment = Moment::new(&record, options)?;
     let bodies = moment.bodies(options)?;
-    let warnings = words::warnings(&moment, &bodies);
+    let warnings = words::warnings(&moment, &bodies, options.depth.is_empty());
     if options.json {
         answer!("{}", words::object(&moment, &bodies, &warnings));
     }

@@ -136,8 +136,8 @@ fn say_greatest(label: &str, found: Greatest) {
     );
 }
 
-/// What the figures do not say.
-pub(super) fn warnings(moment: &Moment, bodies: &[Body]) -> Vec<String> {
+/// What the figures do not say; `searched` if the depths are not those of the user.
+pub(super) fn warnings(moment: &Moment, bodies: &[Body], searched: bool) -> Vec<String> {
     let mut warnings = Vec::new();
     if moment.state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0) {
         warnings.push(
@@ -148,7 +148,7 @@ pub(super) fn warnings(moment: &Moment, bodies: &[Body]) -> Vec<String> {
     let cell = moment.record.grid().cell_area().sqrt();
     for body in bodies {
         let greatest = body.survey.greatest(Measure::VonMises);
-        if greatest.depth > 0.0 && greatest.depth < 2.0 * cell {
+        if searched && greatest.depth > 0.0 && greatest.depth < 2.0 * cell {
             warnings.push(format!(
                 "in the {} von Mises' stress is greatest {} below the surface, less than two cells: it is that of the grid. A finer one tells more",
                 body.name,
