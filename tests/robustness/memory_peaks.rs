@@ -1,12 +1,13 @@
 //! Budgets are looked at before memory is taken: the bytes that are allocated at the peak stay within them.
 
 use allocation_counter::{AllocationInfo, measure};
+use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::LoadingBuilder;
 use asperity::surface::{HeightMap, Paraboloid};
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
-    Boussinesq, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
-    Spectral,
+    Boussinesq, ContactGrowth, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
+    PeriodicBoussinesq, Spectral,
 };
 use nalgebra::DMatrix;
 
@@ -124,6 +125,37 @@ fn paths_stay_within_their_budget() {
                 }
                 partial += counts.iter().filter(|c| c.is_some_and(|c| c > 0 && c < 900)).count();
             }
+        }
+    }
+    assert!(partial > 5, "{partial}");
+}
+
+/// So do paths on which nodes yield, and paths on which nodes leave.
+#[test]
+fn paths_on_which_nodes_yield_or_leave_stay_within_their_budget() {
+    let mut partial = 0;
+    for grid in grids() {
+        let map = rough(&grid);
+        let free = Boussinesq::new(grid, 1.0).unwrap();
+        let coat = Layer { young: 100.0, poisson: 0.3, thickness: 6.0 };
+        let base = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+        let body = LayeredBody::new(&[coat], base).unwrap();
+        let coated = Layered::free(grid, body).unwrap();
+        assert_eq!(coated.contact_growth(), ContactGrowth::Unknown);
+        for budget in [1, 2, 3, 4, 6, 8, 12, 20].map(|megabytes| megabytes << 19) {
+            let yielding = || LoadingSolver::builder(&map, &free).hardness(0.05).max_nodes(900);
+            let leaving = || LoadingSolver::builder(&map, &coated).max_nodes(900);
+            let mut counts = [None; 4];
+            let peaks = [
+                peak(|| counts[0] = follow(yielding().updater(RecursiveCholesky::new()), budget)),
+                peak(|| counts[1] = follow(yielding().updater(Handover::new()), budget)),
+                peak(|| counts[2] = follow(leaving().updater(RecursiveCholesky::new()), budget)),
+                peak(|| counts[3] = follow(leaving().updater(Handover::new()), budget)),
+            ];
+            for bytes in peaks {
+                assert!(bytes <= budget + WORKSPACE, "{bytes} bytes within a budget of {budget}");
+            }
+            partial += counts.iter().filter(|c| c.is_some_and(|c| c > 0 && c < 900)).count();
         }
     }
     assert!(partial > 5, "{partial}");
