@@ -214,9 +214,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     ///
     /// Contact must be known to grow ([`ContactGrowth`]). An updater needs [`watch_both`](LinearUpdater::watch_both),
     /// [`solve_for`](LinearUpdater::solve_for), [`release`](LinearUpdater::release) and
-    /// [`truncate`](LinearUpdater::truncate) for it; iterations
-    /// ([`ConjugateGradient`]) serve it as well, and take over from a factor as on elastic paths. The factor then holds
-    /// elastic nodes only.
+    /// [`truncate`](LinearUpdater::truncate) for it; iterations ([`ConjugateGradient`]) serve it as well, and take over
+    /// from a factor as on elastic paths. The factor then holds elastic nodes only.
     ///
     /// [`ContactEvent::Yield`]: super::ContactEvent::Yield
     pub fn hardness(mut self, hardness: f64) -> Self {
@@ -246,8 +245,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// Those of [`Problem::new`]; [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no sense;
     /// [`SurfaceError::LessThanOneNode`](crate::SurfaceError::LessThanOneNode) for an area fraction without a node;
     /// [`Error::MemoryBudget`] if not even the grid fits. With a hardness [`Error::NotPositive`] and
-    /// [`Error::GridMismatch`] for itself, [`Error::BeyondHardness`] for a load that it cannot bear, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a
-    /// kernel that does not promise that contact grows.
+    /// [`Error::GridMismatch`] for itself, [`Error::BeyondHardness`] for a load that it cannot bear, and
+    /// [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that contact
+    /// grows.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
         let phase = Phase::new(self.updater, self.settings.hand_over);
         self.settings.build(phase).map(LoadingSolver::of)
