@@ -427,11 +427,16 @@ fn friction_work(bed: &Bed, [p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) 
 /// ∫ (s₁ − s) dδ(s) from s₀ up to s₁: over a few intervals as a sum of positive terms, over many by the energy ∫ s dδ, of
 /// which rounding leaves less than there is of so small a step.
 fn before_end(bed: &Bed, start: &BedState, end: &BedState) -> f64 {
-    let inside = start.interval + 1..end.interval + 1;
+    // Nodes that touch together are one knot: the step may be as small as those of a few.
+    let (mut inside, mut next) = (Vec::new(), start.interval + 1);
+    while next <= end.interval && inside.len() <= FEW_KNOTS {
+        let last = bed.loads().partition_point(|load| *load <= bed.loads()[next]) - 1;
+        inside.push((bed.loads()[last], bed.approaches()[last]));
+        next = last + 1;
+    }
     if inside.len() <= FEW_KNOTS {
-        let knots = inside.map(|knot| (bed.loads()[knot], bed.approaches()[knot]));
         let (mut sum, mut before) = (0.0, (start.load, start.approach));
-        for next in knots.chain([(end.load, end.approach)]) {
+        for next in inside.into_iter().chain([(end.load, end.approach)]) {
             let left = (end.load - before.0) + (end.load - next.0);
             sum += 0.5 * left * (next.1 - before.1);
             before = next;
