@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use asperity::contact::ContactState;
+use asperity::record::LoadingRecord;
 use asperity::{ContactTarget, LoadingState};
 use asperity_cli::number::{area, quantity};
 use asperity_cli::outcome::Failure;
@@ -103,6 +104,18 @@ impl At {
         }
         Ok(())
     }
+}
+
+/// The state of a record at a load \[N\].
+pub(crate) fn state_at_load(record: &LoadingRecord, load: f64) -> Result<LoadingState, Failure> {
+    record.history().at_load(load).ok_or_else(|| {
+        let end = record.states().last().map_or(0.0, |last| last.contact.load);
+        Failure::request(format!(
+            "the path has no state at {}: it ends at {}",
+            quantity(load, "N", 6),
+            quantity(end, "N", 6)
+        ))
+    })
 }
 
 impl FromStr for At {

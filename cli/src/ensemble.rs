@@ -10,15 +10,18 @@ use std::str::FromStr;
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
+/// Options of one path.
+const OF_ONE_PATH: [&str; 4] = ["surface", "seed", "resume", "record"];
+
 /// Many surfaces in place of one.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Ensemble {
     /// Follow a path for each seed from A to B, in DIR/seed_N; folders that are there are skipped
-    #[arg(long, value_name = "A..B", conflicts_with_all = ["surface", "seed", "resume", "record"], help_heading = "Many surfaces")]
+    #[arg(long, value_name = "A..B", conflicts_with_all = OF_ONE_PATH, help_heading = "Many surfaces")]
     pub(crate) seeds: Option<Seeds>,
 
     /// Only the K-th of N equal shares of the seeds, for job arrays; K counts from 0 or from 1
-    #[arg(long, value_name = "K/N", requires = "seeds", conflicts_with_all = ["surface", "seed", "resume", "record"], help_heading = "Many surfaces")]
+    #[arg(long, value_name = "K/N", requires = "seeds", conflicts_with_all = OF_ONE_PATH, help_heading = "Many surfaces")]
     task: Option<Task>,
 }
 

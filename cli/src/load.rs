@@ -88,7 +88,7 @@ pub(crate) struct Options {
 #[group(required = true, multiple = true)]
 struct Loads {
     /// Load over nominal area, load, or contact area: 5MPa,50MPa or 10N or 2mm2 or 10%; a bare number is a mean
-    /// pressure in Pa. An area is solved for at a load between the touches of two nodes
+    /// pressure in Pa. For an area the load is any at which so many nodes are in contact
     #[arg(long, value_name = "STATE,...", value_delimiter = ',')]
     at: Vec<At>,
 

@@ -107,6 +107,12 @@ pub fn write(name: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf, Failure> {
         .map_err(|error| Failure::writing(name, error))
 }
 
+/// Whether a name is of something else than a file.
+#[must_use]
+pub fn is_device(name: &Path) -> bool {
+    name.exists() && !name.is_file()
+}
+
 /// `Ok` if a file can be written: before the work whose result it is to hold. What is there stays as it is.
 ///
 /// # Errors
@@ -117,8 +123,8 @@ pub fn check_place(name: &Path) -> Result<(), Failure> {
     if name.is_dir() {
         return Err(failed(std::io::ErrorKind::IsADirectory.into()));
     }
-    if name.exists() && !name.is_file() {
-        // A device is written to as it is.
+    if is_device(name) {
+        // It is written to as it is.
         return Ok(());
     }
     // As it will be written: beside its place.

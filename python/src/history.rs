@@ -103,8 +103,9 @@ impl Setting {
 
 /// The states of a path in the order of loading, as columns: new arrays of NumPy with one value for each state.
 ///
-/// A sequence of `State`; a slice of it is a history of fewer states, enough for slip, creep and conductance. `at` reads all states exactly at any load, approach, mean gap or area: between two events a path is
-/// linear in the approach.
+/// A sequence of `State`; a slice of it is a history of fewer states, enough for slip, creep and conductance. Where no
+/// state between others is left out, `at` reads it exactly at any load, approach, mean gap or area: between two events a
+/// path is linear in the approach.
 ///
 /// Examples
 /// --------

@@ -49,6 +49,7 @@ impl Plastic {
         (none, elastic)
     }
 
+    /// None has yielded.
     fn none(hardness: Arc<Hardness>, surface: Arc<Problem>) -> Self {
         let nodes = surface.grid().nodes();
         let nothing = vec![0.0; nodes];

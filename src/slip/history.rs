@@ -427,21 +427,23 @@ fn friction_work(bed: &Bed, [p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) 
 /// ∫ (s₁ − s) dδ(s) from s₀ up to s₁: over a few intervals as a sum of positive terms, over many by the energy ∫ s dδ, of
 /// which rounding leaves less than there is of so small a step.
 fn before_end(bed: &Bed, start: &BedState, end: &BedState) -> f64 {
-    // Nodes that touch together are one knot: the step may be as small as those of a few.
-    let (mut inside, mut next) = (Vec::new(), start.interval + 1);
-    while next <= end.interval && inside.len() <= FEW_KNOTS {
-        let last = bed.loads().partition_point(|load| *load <= bed.loads()[next]) - 1;
-        inside.push((bed.loads()[last], bed.approaches()[last]));
-        next = last + 1;
-    }
-    if inside.len() <= FEW_KNOTS {
-        let (mut sum, mut before) = (0.0, (start.load, start.approach));
-        for next in inside.into_iter().chain([(end.load, end.approach)]) {
-            let left = (end.load - before.0) + (end.load - next.0);
-            sum += 0.5 * left * (next.1 - before.1);
-            before = next;
+    let (mut sum, mut before, mut next) = (0.0, (start.load, start.approach), start.interval + 1);
+    for _ in 0..=FEW_KNOTS {
+        let is_end = next > end.interval;
+        let knot = if is_end {
+            (end.load, end.approach)
+        } else {
+            // Nodes that touch together are one knot: the step may be as small as those of a few.
+            let last = bed.loads().partition_point(|load| *load <= bed.loads()[next]) - 1;
+            next = last + 1;
+            (bed.loads()[last], bed.approaches()[last])
+        };
+        let left = (end.load - before.0) + (end.load - knot.0);
+        sum += 0.5 * left * (knot.1 - before.1);
+        if is_end {
+            return sum.max(0.0);
         }
-        return sum.max(0.0);
+        before = knot;
     }
     let (loads, approaches) = (end.load - start.load, end.approach - start.approach);
     let rest = end.load * approaches - (end.energy - start.energy);

@@ -119,7 +119,7 @@ fn stiffnesses_among_nodes_that_touch_at_once_are_those_of_the_factor() {
     }
 }
 
-/// A window of as many nodes as there are numbers is one of all nodes.
+/// A window that is greater than the grid is one of all its nodes.
 #[test]
 fn windows_of_any_size_hold_all_nodes() {
     let grid = Grid::square(16, 1.0).unwrap();

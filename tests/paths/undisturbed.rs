@@ -1,6 +1,7 @@
 //! Questions in between do not change a bit of the path.
 
 use crate::problems::{grid, kernels, rough};
+use crate::resumed::whole;
 use asperity::loading::LoadingBuilder;
 use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{ContactGrowth, LoadingSolver};
@@ -9,8 +10,7 @@ use asperity::{ContactGrowth, LoadingSolver};
 fn undisturbed<U: LinearUpdater + Clone>(builder: &LoadingBuilder<'_, U>, context: &str) {
     for window in [1, 7, 40] {
         let builder = builder.clone().window_size(window);
-        let expected = builder.clone().build().unwrap();
-        let expected: Vec<_> = expected.map(Result::unwrap).collect();
+        let expected = whole(builder.clone());
         let mut path = builder.build().unwrap();
         let mut states = Vec::new();
         while let Some(state) = path.next() {
@@ -36,17 +36,7 @@ fn everywhere<U: LinearUpdater + Clone>(updater: U, context: &str) {
         let builder = builder.max_area_fraction(0.5);
         undisturbed(&builder, &format!("{context}, {name}"));
         if kernel.contact_growth() != ContactGrowth::Unknown {
-            let load = builder
-                .clone()
-                .build()
-                .unwrap()
-                .run()
-                .unwrap()
-                .states()
-                .last()
-                .unwrap()
-                .contact
-                .load;
+            let load = whole(builder.clone()).last().unwrap().contact.load;
             // Half of the pressure that the nodes in contact bear on average: most of them yield.
             let hardness = load / grid().nominal_area();
             undisturbed(&builder.hardness(hardness), &format!("{context}, {name}, hardness"));

@@ -13,8 +13,8 @@ use crate::values::{FORCE, LENGTH, SHARE, TIME};
 /// history
 ///
 /// The bodies relax as E(t)/E0 = 1 - sum of g (1 - exp(-t/tau)), E0 being the modulus E* of the path. While the
-/// effective load grows, everything is in closed form from the path. Where contact recedes the contact is
-/// stepped in time, and the remaining error of the steps is measured and printed. Writes creep.csv (time,
+/// effective load grows, everything is in closed form from the path. Where it recedes, contact is stepped
+/// in time, and the remaining error of the steps is measured and printed. Writes creep.csv (time,
 /// effective_load, load, approach, contact_area_fraction, mean_gap), creep.png (area, mean gap and load over time, with
 /// the times at which the contact percolates and its last channel closes), touch_times.png (when each node touched),
 /// and for a load that is held creep_cycles.csv and creep_cycles.png (loops, and the energy lost in cycles of load

@@ -86,10 +86,7 @@ fn course(options: &Options, task: &Task) {
 fn method(followed: &Followed) {
     match (followed.method, followed.recedes) {
         (Method::Steps { count, halvings, error }, Some(recedes)) => {
-            say!(
-                "contact    recedes from t = {} on: the contact is stepped in time",
-                units::time(recedes)
-            );
+            say!("contact    recedes from t = {} on, and is stepped in time", units::time(recedes));
             let halved = match halvings {
                 0 => String::new(),
                 some => format!(", {some} of them halved"),

@@ -20,6 +20,7 @@ use asperity_cli::{answer, panel, speech};
 use clap::Args;
 
 use crate::advice;
+use crate::at::state_at_load;
 use crate::values::FORCE;
 use fluid::Fluid;
 pub(crate) use fluid::PerhapsFluid;
@@ -82,19 +83,10 @@ impl Work {
 
     /// The states at the loads asked for.
     fn states(&self, loads: &[f64]) -> Result<Vec<LoadingState>, Failure> {
-        let Some(last) = self.record.states().last() else {
+        if self.record.states().is_empty() {
             return Err(Failure::request("the record holds no state"));
-        };
-        let at = |load: &f64| {
-            self.record.history().at_load(*load).ok_or_else(|| {
-                Failure::request(format!(
-                    "the path has no state at {}: it ends at {}",
-                    quantity(*load, "N", 6),
-                    quantity(last.contact.load, "N", 6)
-                ))
-            })
-        };
-        loads.iter().map(at).collect()
+        }
+        loads.iter().map(|load| state_at_load(&self.record, *load)).collect()
     }
 
     /// The state at half of the load at which the last channel closes, otherwise the last one.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use asperity::{Boundary, ContactRule, ContactTarget, Error, Grid};
 use asperity_cli::half_space::{Periodic, boundary};
-use asperity_cli::outcome::{Failure, check_input, is_same};
+use asperity_cli::outcome::{Failure, check_input, is_device, is_same};
 use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::{Format, RESIDUAL_SURFACES};
@@ -232,7 +232,6 @@ impl Options {
             check_input(file, &self.out, &written)?;
         }
         // No other file of a path has such a name. A device has any.
-        let is_device = |file: &PathBuf| file.exists() && !file.is_file();
         let is_record = |file: &PathBuf| file.extension().is_some_and(|end| end == "npz");
         match self.record.as_ref().filter(|file| !is_device(file) && !is_record(file)) {
             Some(file) => Err(Failure::request(format!(

@@ -3,12 +3,12 @@
 use asperity::record::LoadingRecord;
 use asperity::stress::{FirstYield, Subsurface, Survey};
 use asperity::{LoadingPath, LoadingState};
-use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
 use super::Options;
 use super::progress::Progress;
+use crate::at::state_at_load;
 
 /// A state of the record.
 pub(super) struct Moment<'a> {
@@ -54,13 +54,7 @@ impl<'a> Moment<'a> {
         };
         let state = match options.load {
             None => last,
-            Some(load) => record.history().at_load(load).ok_or_else(|| {
-                Failure::request(format!(
-                    "the path has no state at {}: it ends at {}",
-                    quantity(load, "N", 6),
-                    quantity(last.contact.load, "N", 6)
-                ))
-            })?,
+            Some(load) => state_at_load(record, load)?,
         };
         let mut path = record.replay().map_err(failed)?;
         let pressure = path.fields_at(&state).map_err(failed)?.pressure;

@@ -286,19 +286,19 @@ impl Solutions {
         let mut part = contact.clone();
         part.truncate(count);
         let behind = Behind::on(problem, &part, approach);
-        let belongs = || self.solved.iter().all(|&node| contact.contains(node));
         // From no contact, the solver would tell in the last digits what it solved before.
-        let begins = 1..=count;
-        let equilibrium =
-            if begins.contains(&self.now.count) && self.now.load.is_known() && belongs() {
-                let now = mem::take(&mut self.now);
-                let passage = Passage::of(&behind, now.count, |_| false);
-                let found = self.solve_from(criteria, &behind, Aim::Exact, &now, &passage);
-                self.now = now;
-                found?.0
-            } else {
-                Self::solve_from_nothing(criteria, &behind)?
-            };
+        let begins = (1..=count).contains(&self.now.count)
+            && self.now.load.is_known()
+            && self.solved.iter().all(|&node| contact.contains(node));
+        let equilibrium = if begins {
+            let now = mem::take(&mut self.now);
+            let passage = Passage::of(&behind, now.count, |_| false);
+            let found = self.solve_from(criteria, &behind, Aim::Exact, &now, &passage);
+            self.now = now;
+            found?.0
+        } else {
+            Self::solve_from_nothing(criteria, &behind)?
+        };
         equilibrium.write(&part, solved);
         Ok(())
     }
