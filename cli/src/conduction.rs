@@ -3,6 +3,7 @@
 use asperity::contact::ContactState;
 use asperity::joint::{Carrier, Conduction};
 use asperity::kernel::Layering;
+use asperity_cli::note;
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
@@ -34,13 +35,23 @@ pub(crate) struct Conduct {
 pub(crate) type Named = (&'static str, Conduction);
 
 impl Conduct {
+    /// What is given, by option.
+    fn given(&self) -> [(&'static str, &[f64]); 2] {
+        [("--resistivity", &self.resistivity), ("--conductivity", &self.conductivity)]
+    }
+
+    /// Says what a single value means: half of the resistance of two equal bodies.
+    pub(crate) fn tell(&self) {
+        for (option, _) in self.given().iter().filter(|(_, values)| values.len() == 1) {
+            note!("note: {option} has the value of one body; the other conducts perfectly");
+        }
+    }
+
     /// What is to be conducted between bodies of a composite modulus.
     pub(crate) fn conductions(&self, e_star: f64) -> Result<Vec<Named>, Failure> {
         let failed = |error| Failure::new("cannot compute a conductance", error);
         let mut all = Vec::new();
-        for (option, values) in
-            [("--resistivity", &self.resistivity), ("--conductivity", &self.conductivity)]
-        {
+        for (option, values) in self.given() {
             if values.len() > 2 {
                 return Err(Failure::request(format!(
                     "{option} takes the values of one body or of two"

@@ -145,6 +145,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(hardness) = hardness {
         note!("hardness   {hardness}");
     }
+    options.conduct.tell();
     let warnings = Warning::of_surface(&surface).into_iter();
     let soft = hardness.and_then(|h| Warning::of_hardness(h.pascals, bodies.e_star));
     for warning in warnings.chain(bodies.warnings(surface.grid())).chain(soft) {

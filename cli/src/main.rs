@@ -12,6 +12,7 @@ mod ensemble;
 mod formats;
 mod gather;
 mod hardness;
+mod history_table;
 mod info;
 mod layers;
 mod leak;

@@ -210,6 +210,9 @@ fn joints_are_tabulated() -> Result<(), Box<dyn Error>> {
         &[&PATH[..], &["--resistivity", "1.7e-8,1.7e-8", "--conductivity", "400"]].concat(),
     )?;
     assert!(begun.status.success());
+    let told = String::from_utf8(begun.stderr)?;
+    assert!(told.contains("--conductivity has the value of one body"), "{told}");
+    assert!(!told.contains("--resistivity has"), "{told}");
     let table = fs::read_to_string(folder.join("path/path.csv"))?;
     let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     let names = &lines[0];

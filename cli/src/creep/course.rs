@@ -1,11 +1,11 @@
 //! What is asked for: bodies, history, times.
 
-use std::path::Path;
-
 use asperity::creep::{ControlHistory, PiecewiseLinear, Prony, Steps};
 use asperity_cli::outcome::Failure;
 
 use super::Options;
+use crate::history_table::HistoryTable;
+use crate::values::{FORCE, LENGTH, TIME};
 
 /// What to follow.
 pub(super) struct Task {
@@ -67,46 +67,26 @@ fn course(options: &Options) -> Result<ControlHistory, Failure> {
     match (options.load, options.approach, &options.history) {
         (Some(load), _, _) => put_on(load).map(ControlHistory::Load).map_err(failed),
         (_, Some(approach), _) => put_on(approach).map(ControlHistory::Approach).map_err(failed),
-        (_, _, Some(file)) => read(file),
+        (_, _, Some(file)) => HistoryTable::read(file, history),
         _ => Err(Failure::request("give --load, --approach or --history")),
     }
 }
 
-/// A history from a file.
-fn read(file: &Path) -> Result<ControlHistory, Failure> {
-    let name = file.display();
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Failure::new(format!("cannot read {name}"), error))?;
-    parse(&text).map_err(|what| Failure::request(format!("{name}: {what}")))
-}
-
-fn parse(text: &str) -> Result<ControlHistory, String> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let lines = text.lines().zip(1..).map(|(line, number)| (line.trim(), number));
-    let mut lines = lines.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
-    let header = lines.next().map_or("", |(line, _)| line);
-    let names: Vec<String> = header.split(',').map(|name| name.trim().to_lowercase()).collect();
-    let make: fn(PiecewiseLinear) -> ControlHistory =
-        match names.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-            ["time", "load"] => ControlHistory::Load,
-            ["time", "approach"] => ControlHistory::Approach,
+/// Load or approach over time.
+fn history(table: &HistoryTable) -> Result<ControlHistory, String> {
+    let (values, make): (_, fn(PiecewiseLinear) -> ControlHistory) =
+        match (table.has("load"), table.has("approach")) {
+            (true, false) => (table.column("load", &FORCE)?, ControlHistory::Load),
+            (false, true) => (table.column("approach", &LENGTH)?, ControlHistory::Approach),
             _ => {
                 return Err(format!(
-                    "the first line must be `time,load` or `time,approach`, but is `{header}`"
+                    "its first line must name `time` and one of `load` and `approach`, but is `{}`",
+                    table.header()
                 ));
             }
         };
-    let mut corners = Vec::new();
-    for (line, number) in lines {
-        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-        let parsed = match fields[..] {
-            [time, value] => time.parse().ok().zip(value.parse().ok()),
-            _ => None,
-        };
-        let corner: (f64, f64) =
-            parsed.ok_or_else(|| format!("line {number}, `{line}`, is no pair of numbers"))?;
-        corners.push(corner);
-    }
+    let times = table.column("time", &TIME)?;
+    let corners = times.into_iter().zip(values);
     PiecewiseLinear::new(corners).map(make).map_err(|error| error.to_string())
 }
 
@@ -116,19 +96,17 @@ mod tests {
 
     #[test]
     fn histories_are_read() {
-        let read = parse("\u{feff}# made by hand\nTime, Load\r\n0,0\n\n0.5, 2e2\n0.5,100\n");
+        let parse = |text| HistoryTable::parse(text).and_then(|table| history(&table));
+        let read = parse("time, load\n0,0\n0.5, 2e2\n0.5,100\n");
         let expected = PiecewiseLinear::new([(0.0, 0.0), (0.5, 200.0), (0.5, 100.0)]);
         assert_eq!(read.ok(), expected.ok().map(ControlHistory::Load));
         assert!(matches!(parse("time,approach\n0,1e-6"), Ok(ControlHistory::Approach(_))));
         for (bad, word) in [
-            ("", "first line"),
-            ("0,1\n1,2", "first line"),
-            ("time,load,area\n0,1,2", "first line"),
+            ("0,1\n1,2", "must name"),
+            ("time,load,approach\n0,1,2", "one of"),
+            ("load\n0", "`time`"),
             ("time,load", "at least 1"),
-            ("time,load\n0,a", "line 2"),
-            ("time,load\n0,1,2", "line 2"),
             ("time,load\n1,1\n0,1", "no earlier"),
-            ("time,load\n0,nan", "finite"),
         ] {
             let said = parse(bad).err().unwrap_or_default();
             assert!(said.contains(word), "{bad}: {said}");

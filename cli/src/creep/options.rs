@@ -38,8 +38,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "METRES", value_parser = LENGTH.positive(), conflicts_with = "history")]
     pub(super) approach: Option<f64>,
 
-    /// Load or approach over time: a CSV file of two columns with the header `time,load` or `time,approach`, linear
-    /// between its lines; a time given twice is a jump
+    /// Load or approach over time: a table with the columns `time,load` or `time,approach`, linear between its lines; a
+    /// time given twice is a jump. Units may stand in the first line, `load [kN]`, or behind numbers; cells end at
+    /// commas, semicolons or tabs
     #[arg(long, value_name = "FILE.csv")]
     pub(super) history: Option<PathBuf>,
 

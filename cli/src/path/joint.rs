@@ -28,7 +28,7 @@ pub(super) struct Pair<'a> {
 #[command(next_help_heading = "Joint")]
 pub(super) struct Joint {
     #[command(flatten)]
-    conduct: Conduct,
+    pub(super) conduct: Conduct,
 
     /// Write conductance.csv, with bounds for a surface that has more roughness than the grid, of at most this height
     /// from valley to peak

@@ -134,6 +134,7 @@ fn prepare(options: &Options, is_first: bool) -> Result<(Job, Vec<Named>), Failu
     }
     if is_first {
         note!("{}", job.to_string().trim_end());
+        options.joint.conduct.tell();
         for warning in job.warnings() {
             eprintln!("warning: {}", crate::advice::told(&warning));
         }

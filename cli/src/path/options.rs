@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use asperity::{Boundary, ContactRule, ContactTarget, Error, Grid};
 use asperity_cli::half_space::{Periodic, boundary};
+use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, check_input, is_device, is_same};
 use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
@@ -251,7 +252,8 @@ impl Options {
     pub(super) fn check_approach(&self) -> Result<(), Failure> {
         match self.ends.max_approach {
             Some(approach) if approach <= 0.0 => Err(Failure::request(format!(
-                "--max-approach {approach} m must be positive: only with --work-of-adhesion anything happens before 0"
+                "--max-approach {} must be positive: only with --work-of-adhesion anything happens before 0",
+                quantity(approach, "m", 5)
             ))),
             _ => Ok(()),
         }

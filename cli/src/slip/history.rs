@@ -6,6 +6,8 @@ use asperity::slip::{SlipHistory, SlipState};
 use asperity_cli::outcome::Failure;
 
 use super::joint::Joint;
+use crate::history_table::HistoryTable;
+use crate::values::FORCE;
 
 /// Points between two rows, for the picture.
 const BETWEEN: usize = 24;
@@ -21,10 +23,7 @@ pub(super) struct Sheared {
 impl Sheared {
     /// From no load along the rows of a file.
     pub(super) fn follow(joint: &Joint, name: &Path) -> Result<Self, Failure> {
-        let text = std::fs::read_to_string(name)
-            .map_err(|error| Failure::new(format!("cannot read {}", name.display()), error))?;
-        let steps = rows(&text)
-            .map_err(|wrong| Failure::request(format!("cannot use {}: {wrong}", name.display())))?;
+        let steps = HistoryTable::read(name, loads)?;
         let mut history = SlipHistory::new(joint.slip.bed(), joint.slip.friction());
         let (mut rows, mut ways) = (Vec::new(), Vec::new());
         let mut from = (0.0, 0.0);
@@ -37,8 +36,11 @@ impl Sheared {
                 let between =
                     |a: f64, b: f64| if part == BETWEEN { b } else { a + share * (b - a) };
                 let to = (between(from.0, load), between(from.1, force));
-                let state = history.to(to.0, to.1).map_err(failed)?;
-                way.push(state);
+                let state = history.to(to.0, to.1).or_else(|error| {
+                    // The row as it is written says more than a part of the way there.
+                    history.to(load, force).and(Err(error))
+                });
+                way.push(state.map_err(failed)?);
             }
             ways.push(way);
             rows.push((history.state(), history.dissipation()));
@@ -54,44 +56,26 @@ impl Sheared {
 }
 
 /// Line, load and tangential load of each row.
-fn rows(text: &str) -> Result<Vec<(usize, f64, f64)>, String> {
-    let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
-    let (_, header) = lines.next().ok_or("it is empty")?;
-    let names: Vec<&str> = header.split(',').map(str::trim).collect();
-    let place = |name: &str| {
-        let found = names.iter().position(|other| *other == name);
-        found.ok_or_else(|| format!("its first line names no column `{name}`, but `{header}`"))
-    };
-    let (load, force) = (place("load")?, place("tangential_load")?);
-    let rows = lines.map(|(line, text)| {
-        let cells: Vec<&str> = text.split(',').map(str::trim).collect();
-        let number = |place: usize| {
-            let cell = cells.get(place).copied().unwrap_or_default();
-            let value = cell.parse().ok().filter(|value: &f64| value.is_finite());
-            value.ok_or_else(|| format!("`{cell}` in line {line} is no finite number"))
-        };
-        Ok((line, number(load)?, number(force)?))
-    });
-    let rows: Vec<_> = rows.collect::<Result<_, String>>()?;
+fn loads(table: &HistoryTable) -> Result<Vec<(usize, f64, f64)>, String> {
+    let pairs =
+        table.column("load", &FORCE)?.into_iter().zip(table.column("tangential_load", &FORCE)?);
+    let rows: Vec<_> = table.lines().zip(pairs).map(|(line, (p, t))| (line, p, t)).collect();
     if rows.is_empty() { Err("it has no rows".to_string()) } else { Ok(rows) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::rows;
+    use super::{HistoryTable, loads};
 
     #[test]
-    fn tables_are_read_by_their_names() {
-        let found = rows("t, tangential_load, load\n0,1.5,2\n\n1,-0.5,2e3\n");
+    fn loads_are_read_by_their_names() {
+        let read = |text| HistoryTable::parse(text).and_then(|table| loads(&table));
+        let found = read("t, tangential_load, load\n0,1.5,2\n\n1,-0.5,2e3\n");
         assert_eq!(found, Ok(vec![(2, 2.0, 1.5), (4, 2000.0, -0.5)]));
-        for (text, word) in [
-            ("", "empty"),
-            ("load,tangential_load\n", "rows"),
-            ("1,2\n3,4\n", "no column `load`"),
-            ("load,tangential_load\n1\n", "line 2"),
-            ("load,tangential_load\n1,nan\n", "`nan`"),
-        ] {
-            assert!(rows(text).is_err_and(|wrong| wrong.contains(word)), "{text}");
+        for (text, word) in
+            [("load,tangential_load\n", "rows"), ("load,t\n1,2", "`tangential_load`")]
+        {
+            assert!(read(text).is_err_and(|wrong| wrong.contains(word)), "{text}");
         }
     }
 }

@@ -72,7 +72,8 @@ pub(crate) struct Options {
     against: Option<Material>,
 
     /// Table of loads and tangential loads, with the columns load,tangential_load: the joint follows straight lines
-    /// between them, from no load on. Writes history.csv and history.png
+    /// between them, from no load on. Units may stand in the first line, `load [kN]`, or behind numbers; cells end at
+    /// commas, semicolons or tabs. Writes history.csv and history.png
     #[arg(long, value_name = "FILE.csv")]
     history: Option<PathBuf>,
 

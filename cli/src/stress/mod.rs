@@ -81,8 +81,8 @@ pub(crate) struct Options {
 
     /// Write stress.vti, which ParaView opens: the stress tensor and its measures at so many depths, as deep as the
     /// sections
-    #[arg(long, value_name = "DEPTHS")]
-    volume: Option<usize>,
+    #[arg(long, value_name = "DEPTHS", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    volume: Option<u32>,
 
     /// Print one JSON object with load, mean_pressure, friction, angle, bodies and warnings, and write files only if
     /// --out is given. Each body has poissons_ratio, von_mises, tresca, greatest_shear and greatest_tension (value,
@@ -101,9 +101,6 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
-    }
-    if options.volume == Some(0) {
-        return Err(Failure::request("--volume takes at least 1 depth"));
     }
     let file = options.record.display();
     let record = LoadingRecord::read_npz(&options.record)
@@ -130,7 +127,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outcome.all_written(maps::draw(&moment, body, directory));
     outcome.all_written(section::draw(&moment, body, directory));
     if let Some(depths) = options.volume {
-        outcome.written(section::write_volume(&moment, body, depths, place("stress.vti")));
+        outcome.written(section::write_volume(&moment, body, depths as usize, place("stress.vti")));
     }
     outcome.finish()
 }
