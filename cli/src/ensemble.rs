@@ -6,6 +6,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::OnceLock;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use asperity_cli::outcome::Failure;
 use clap::Args;
@@ -125,7 +127,11 @@ impl Member {
 
     /// Where the files are written before the folder gets its name.
     pub(crate) fn unfinished(&self) -> PathBuf {
-        let name = format!("seed_{}.{}.unfinished", self.seed, std::process::id());
+        // On several machines processes may have one number.
+        static BEGUN: OnceLock<u128> = OnceLock::new();
+        let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_nanos());
+        let begun = BEGUN.get_or_init(now);
+        let name = format!("seed_{}.{}.{begun}.unfinished", self.seed, std::process::id());
         self.folder.with_file_name(name)
     }
 

@@ -30,19 +30,19 @@ impl HistoryTable {
             .map_err(|wrong| Failure::request(format!("cannot use {}: {wrong}", file.display())))
     }
 
-    /// Cells end at commas, semicolons or tabs, whichever the first line has; where they end at semicolons, a comma is a
-    /// decimal point.
+    /// Cells end at semicolons, tabs or commas, whichever of these the first line has first; where they end at no commas,
+    /// a comma is a decimal point.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let lines = (1..).zip(text.lines().map(str::trim));
-        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let is_remark = |line: &str| line.is_empty() || line.starts_with('#');
+        let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !is_remark(line.trim()));
         let (_, header) = lines.next().ok_or("it is empty")?;
         let between = [';', '\t'].into_iter().find(|c| header.contains(*c)).unwrap_or(',');
         let columns: Vec<_> = header.split(between).map(name_and_unit).collect();
         let rows = lines.map(|(number, line)| {
             let cells = line.split(between).map(|cell| match between {
-                ',' => cell.to_string(),
-                _ => cell.replace(',', "."),
+                ',' => bare(cell).to_string(),
+                _ => bare(cell).replace(',', "."),
             });
             let cells: Vec<String> = cells.collect();
             if cells.len() != columns.len() {
@@ -73,22 +73,35 @@ impl HistoryTable {
 
     /// A column in SI units.
     pub(crate) fn column(&self, name: &str, kind: &'static Dimension) -> Result<Vec<f64>, String> {
-        let place = self.columns.iter().position(|(other, _)| other == name);
-        let place = place.ok_or_else(|| {
-            format!("its first line names no column `{name}`, but is `{}`", self.header)
-        })?;
-        let unit = &self.columns[place].1;
+        let mut places = (0..).zip(&self.columns).filter(|(_, (other, _))| other == name);
+        let (place, unit) = match (places.next(), places.next()) {
+            (Some((place, (_, unit))), None) => (place, unit),
+            (found, _) => {
+                let columns = if found.is_some() { "several columns" } else { "no column" };
+                let header = &self.header;
+                return Err(format!("its first line names {columns} `{name}`: it is `{header}`"));
+            }
+        };
         let number = |(line, cells): &(usize, Vec<String>)| {
-            let cell = cells[place].trim();
-            kind.any()(&format!("{cell} {unit}"))
+            let cell: &str = &cells[place];
+            // A number has its own unit or that of the column.
+            let has_none = cell.parse::<f64>().is_ok();
+            let given = if has_none { format!("{cell} {unit}") } else { cell.to_string() };
+            kind.any()(&given)
                 .map_err(|wrong| format!("`{cell}` in line {line} is no {name}: {wrong}"))
         };
         self.rows.iter().map(number).collect()
     }
 }
 
+/// A cell without blanks and quotes around it.
+fn bare(cell: &str) -> &str {
+    cell.trim().trim_matches('"').trim()
+}
+
 /// `Load [kN]` is the load in kN.
 fn name_and_unit(cell: &str) -> (String, String) {
+    let cell = bare(cell);
     let (name, unit) = cell.split_once(['[', '(']).unwrap_or((cell, ""));
     let unit = unit.trim().trim_end_matches([']', ')']);
     (name.trim().to_lowercase(), unit.to_string())
@@ -106,6 +119,9 @@ mod tests {
             "\u{feff}# made by hand\nLoad [kN];t;Time (min)\r\n0;;0\r\n\r\n0,2;x;1\r\n",
             "\n\ntime\tload\n0\t0 N\n1 min\t0.2kN",
             "time,load,note\n 0, 0,\n# a pause\n60 s,200,end",
+            "\ttime [min]\tload\n0\t0 s\t0\n1\t60 s\t200\n",
+            "time\tload\tnote\n0\t0\tstart\n60\t200\t\n",
+            "\"time\";\"load [mN]\"\n\"0\";\"0\"\n\"60\";\"0,2 kN\"",
         ] {
             let table = HistoryTable::parse(text)?;
             assert_eq!(table.column("time", &TIME), Ok(vec![0.0, 60.0]), "{text}");
@@ -123,13 +139,15 @@ mod tests {
         for (text, words) in [
             ("", "empty"),
             ("# nothing\n", "empty"),
-            ("1,2\n3,4\n", "no column `load`, but is `1,2`"),
+            ("1,2\n3,4\n", "no column `load`: it is `1,2`"),
+            ("load,Load [N],t\n1,2,3", "several columns `load`"),
             ("load,time\n1\n", "line 2, `1`, has 1 cell,"),
             ("load,time\n1,2\n1,2,3\n", "line 3, `1,2,3`, has 3 cells"),
             ("load,time\nnan,1\n", "`nan` in line 2"),
             ("load,time\n,1\n", "`` in line 2 is no load: not a number"),
             ("load,time\n5mm,1\n", "'mm' is no unit of force"),
             ("load [mm],time\n5,1\n", "'mm' is no unit of force"),
+            ("load [N],time\n5 m,1\n", "'m' is no unit of force"),
         ] {
             let read = HistoryTable::parse(text).and_then(|table| table.column("load", &FORCE));
             assert!(read.as_ref().is_err_and(|wrong| wrong.contains(words)), "{text}: {read:?}");

@@ -80,7 +80,7 @@ fn history(table: &HistoryTable) -> Result<ControlHistory, String> {
             (false, true) => (table.column("approach", &LENGTH)?, ControlHistory::Approach),
             _ => {
                 return Err(format!(
-                    "its first line must name `time` and one of `load` and `approach`, but is `{}`",
+                    "its first line must name `time` and one of `load` and `approach`: it is `{}`",
                     table.header()
                 ));
             }
