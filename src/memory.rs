@@ -3,9 +3,47 @@
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
+use crate::Error;
+
 /// Addresses that threads reserve to allocate from, and a program itself, without taking memory \[bytes\]: measured
 /// with two threads and rounded up.
 const RESERVED: usize = 256 << 20;
+
+/// Bytes that a path may hold, and those that it holds whatever the number of nodes in contact, in proportion to
+/// the grid.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Memory {
+    pub(crate) budget: usize,
+    pub(crate) fixed: usize,
+}
+
+impl Memory {
+    /// The memory budget of updater and iterations.
+    pub(crate) fn left(&self) -> usize {
+        self.budget.saturating_sub(self.fixed)
+    }
+
+    /// `Ok` if `needed` bytes beside the fixed ones are within the budget; `fit` nodes in contact are.
+    pub(crate) fn check(&self, needed: usize, fit: usize) -> Result<(), Error> {
+        let needed = needed.saturating_add(self.fixed);
+        if needed <= self.budget {
+            return Ok(());
+        }
+        Err(Error::MemoryBudget { needed, budget: self.budget, nodes_that_fit: fit })
+    }
+
+    /// An error of the updater, which knows only of what is left to it, in terms of the whole.
+    pub(crate) fn in_all(&self, error: Error) -> Error {
+        match error {
+            Error::MemoryBudget { needed, nodes_that_fit, .. } => Error::MemoryBudget {
+                needed: needed.saturating_add(self.fixed),
+                budget: self.budget,
+                nodes_that_fit,
+            },
+            other => other,
+        }
+    }
+}
 
 /// The memory that a solver may take if nobody says otherwise: three quarters of what the process may use, where the
 /// system tells it (Linux), and no limit elsewhere. That is the least of the memory of the machine, the limits of its

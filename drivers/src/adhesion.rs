@@ -107,6 +107,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         path,
         sample,
         tally: Tally::default(),
+        events: Vec::new(),
     };
     // Within range: where it begins a state is both, out of range and near.
     let turns: Vec<f64> = (0..5).map(|_| draw.between(-0.97 * range, deep)).collect();
@@ -159,6 +160,8 @@ struct Trial<'a> {
     slack: f64,
     sample: &'a Sample,
     tally: Tally,
+    /// Approaches of events.
+    events: Vec<f64>,
 }
 
 impl Trial<'_> {
@@ -173,7 +176,7 @@ impl Trial<'_> {
         let is_alone = turned.is_some_and(|fields| self.is_alone(&fields));
         let start = self.go(low, if is_alone { Extreme::Least } else { Extreme::Neither })?;
         for turn in [high, middle, high] {
-            self.go(turn, Extreme::Neither)?;
+            self.go(self.at_event(turn, [low, highest]), Extreme::Neither)?;
         }
         let back = self.go(low, Extreme::Neither)?;
         if let (true, Some(start), Some(back)) = (is_free, start, back)
@@ -200,6 +203,14 @@ impl Trial<'_> {
         self.path.law().range() + self.sample.surface.peak_to_valley()
     }
 
+    /// The approach of the event that was nearest to a level, if one was between these: rounding puts the target before
+    /// it or behind it.
+    fn at_event(&self, level: f64, [low, high]: [f64; 2]) -> f64 {
+        let between = self.events.iter().copied().filter(|event| *event > low && *event < high);
+        let off = |event: &f64| (event - level).abs();
+        between.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(level)
+    }
+
     /// Goes to an approach; fields of the state there, if a branch ends there.
     fn go(&mut self, to: f64, extreme: Extreme) -> Result<Option<AdhesiveFields>, Stop> {
         let present = self.path.state().map_or(f64::NEG_INFINITY, |s| s.contact.approach);
@@ -210,6 +221,7 @@ impl Trial<'_> {
             false => self.path.unload_to(target),
         }?;
         self.follow()?;
+        self.check_end(to, is_loading)?;
         // A jump may have led mean planes beyond where the walk was to go.
         let extreme = match extreme {
             Extreme::Greatest if !is_loading => Extreme::Neither,
@@ -228,6 +240,25 @@ impl Trial<'_> {
         Ok(Some(fields))
     }
 
+    /// A branch ends at its target, or where nothing more happens.
+    fn check_end(&self, to: f64, is_loading: bool) -> Result<(), Violation> {
+        let Some(state) = self.path.state() else { return Ok(()) };
+        let ContactState { approach, contact_nodes, .. } = state.contact;
+        let pulled = contact_nodes + state.soft_nodes + state.cohesive_nodes;
+        match self.path.end() {
+            Some(AdhesiveEnd::Target) => ensure!(
+                state.event != AdhesiveEvent::Limit || approach == to,
+                "a branch to {to} ends at {approach}"
+            ),
+            _ if is_loading => ensure!(
+                contact_nodes == self.path.grid().nodes(),
+                "nothing more happens below {to}: {state:?}"
+            ),
+            _ => ensure!(pulled == 0, "nothing more happens above {to}: {state:?}"),
+        }
+        Ok(())
+    }
+
     /// The rest of the branch: what costs nothing to check.
     fn follow(&mut self) -> Result<(), Stop> {
         let unit = self.path.law().work() * self.path.grid().nominal_area();
@@ -237,6 +268,9 @@ impl Trial<'_> {
             let greatest = energies.iter().fold(unit, |most, energy| most.max(energy.abs()));
             self.tally.not_negative("loss", state.dissipated - dissipated, ENERGY * greatest)?;
             dissipated = state.dissipated;
+            if !matches!(state.event, AdhesiveEvent::JumpEnd | AdhesiveEvent::Limit) {
+                self.events.push(state.contact.approach);
+            }
             let sum = energies.iter().sum();
             self.tally.close("work", state.work, sum, ENERGY * greatest)?;
             self.energy = self.energy.max(greatest);

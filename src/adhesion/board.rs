@@ -302,6 +302,13 @@ impl Board {
         }
     }
 
+    /// Whether a jump begins with what comes next to a row.
+    pub(super) fn begins_jump(&self, place: usize) -> bool {
+        let mut after = self.clone();
+        after.happen(place);
+        !after.held.is_empty()
+    }
+
     /// Whether other soft nodes have to be held for what happens next to a row, and some soft nodes are not watched.
     pub(super) fn lacks_others(&self, place: usize) -> bool {
         self.rows[place].state == NodeState::Contact

@@ -8,10 +8,10 @@ use super::path::AdhesivePath;
 use super::plain::Plain;
 use super::state::Direction;
 use super::target::Targets;
-use crate::contact::{ContactState, ContactTarget};
+use crate::contact::ContactTarget;
 use crate::convolution::Convolution;
 use crate::error::AdhesionError;
-use crate::memory;
+use crate::memory::{self, Memory};
 use crate::{ContactGrowth, Error, InfluenceKernel, LoadingSolver, Problem, Surface};
 
 /// Fields of the grid that a path holds.
@@ -87,7 +87,7 @@ impl AdhesiveBuilder<'_> {
     /// The path without adhesion.
     fn plain(&self, targets: &Targets, budget: usize) -> Result<Plain, Error> {
         let builder = LoadingSolver::builder(self.surface, self.kernel).memory_budget(budget);
-        let builder = targets.all().iter().fold(builder, |builder, &target| builder.until(target));
+        let builder = targets.nearest().fold(builder, |builder, target| builder.until(target));
         Ok(Plain::new(builder.build()?.into_path()))
     }
 
@@ -115,12 +115,10 @@ impl AdhesiveBuilder<'_> {
             return Err(AdhesionError::GrowthUnknown.into());
         }
         let law = self.law.of(problem.table())?;
-        let targets = Targets::of(&self.targets, &problem.grid())?;
-        let (range, mean_gap) = (law.range(), problem.mean_gap());
-        let apart = ContactState::new(&problem.grid(), 0, -range, 0.0, mean_gap + range);
-        targets.check_ahead(&apart, Direction::Loading)?;
+        let targets = Targets::of(&self.targets, &grid)?;
+        let body = Body::new(Arc::new(problem), law, Memory { budget, fixed });
+        targets.check_ahead(&body.apart(), Direction::Loading, law.work() > 0.0)?;
         let plain = (law.work() == 0.0).then(|| self.plain(&targets, left)).transpose()?;
-        let body = Body::new(Arc::new(problem), law, left);
         let window_size = self.window_size.map(|size| size.min(grid.nodes()));
         Ok(AdhesivePath::new((body, self.law), targets, (window_size, plain)))
     }

@@ -8,8 +8,9 @@ use super::law::CohesiveLaw;
 use super::rows::{Rows, Sources};
 use super::soft::Soft;
 use super::state::NodeState;
-use crate::contact::ContactSequence;
+use crate::contact::{ContactSequence, ContactState};
 use crate::convolution::Convolution;
+use crate::memory::Memory;
 use crate::updater::{Left, LinearUpdater, RecursiveCholesky, Schur, WindowFactor, join_all};
 use crate::{Error, Problem};
 
@@ -61,7 +62,7 @@ impl Field {
 pub(super) struct Body {
     pub(super) problem: Arc<Problem>,
     pub(super) law: CohesiveLaw,
-    pub(super) budget: usize,
+    memory: Memory,
     updater: RecursiveCholesky,
     contact: ContactSequence,
     /// The soft nodes, in the order in which they are watched.
@@ -102,7 +103,7 @@ const NEEDED_FOR_ONE: usize = 4;
 const RESIDUAL: f64 = 1e-8;
 
 impl Body {
-    pub(super) fn new(problem: Arc<Problem>, law: CohesiveLaw, budget: usize) -> Self {
+    pub(super) fn new(problem: Arc<Problem>, law: CohesiveLaw, memory: Memory) -> Self {
         Self {
             contact: ContactSequence::new(problem.grid()),
             convolution: problem.convolution(),
@@ -115,7 +116,7 @@ impl Body {
             least_pivot: 1.0,
             problem,
             law,
-            budget,
+            memory,
         }
     }
 
@@ -153,7 +154,8 @@ impl Body {
             } else {
                 self.watched = Watched::default();
                 let contact = &mut self.contact;
-                join_all(&mut self.updater, &self.problem, contact, &joined, self.budget)?;
+                join_all(&mut self.updater, &self.problem, contact, &joined, self.memory.left())
+                    .map_err(|error| self.memory.in_all(error))?;
             }
         }
         self.list_soft(front);
@@ -235,15 +237,28 @@ impl Body {
     }
 
     fn check_budget(&self, contact: usize, watched: usize) -> Result<(), Error> {
-        let needed = self.updater.bytes(contact, watched);
+        self.memory.check(self.bytes(contact, watched), self.contact.len())
+    }
+
+    fn bytes(&self, contact: usize, watched: usize) -> usize {
         // Three times a matrix of these nodes and its factor: the matrix itself and a copy, that of the soft nodes and
         // its factor, and the columns of a window.
-        let needed = needed.saturating_add(WindowFactor::bytes(watched).saturating_mul(3));
-        if needed > self.budget {
-            let (budget, nodes_that_fit) = (self.budget, self.contact.len());
-            return Err(Error::MemoryBudget { needed, budget, nodes_that_fit });
-        }
-        Ok(())
+        let of_window = WindowFactor::bytes(watched).saturating_mul(3);
+        self.updater.bytes(contact, watched).saturating_add(of_window)
+    }
+
+    /// Another body of the same problem, which has what memory this one leaves.
+    pub(super) fn beside(&self) -> Self {
+        let Memory { budget, fixed } = self.memory;
+        let own = self.bytes(self.contact.len(), self.watched.nodes.len());
+        let left = Memory { budget, fixed: fixed.saturating_add(own) };
+        Self::new(Arc::clone(&self.problem), self.law, left)
+    }
+
+    /// Before first touch, where the highest node comes into range.
+    pub(super) fn apart(&self) -> ContactState {
+        let (range, mean_gap) = (self.law.range(), self.problem.mean_gap());
+        ContactState::new(&self.problem.grid(), 0, -range, 0.0, mean_gap + range)
     }
 
     /// Watches some nodes; those that were watched before come first, and stay if few of them are needed no more

@@ -2,7 +2,6 @@
 
 use std::collections::VecDeque;
 use std::iter::FusedIterator;
-use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
@@ -182,10 +181,9 @@ impl AdhesivePath {
         if self.end == Some(AdhesiveEnd::Failed) {
             return Err(Error::CannotContinue { steps: self.last.map_or(0, |state| state.step) });
         }
-        if let Some(state) = &self.last {
-            targets.check_ahead(&state.contact, direction)?;
-        }
-        self.go_back()?;
+        let present = self.last.map_or_else(|| self.body.apart(), |state| state.contact);
+        targets.check_ahead(&present, direction, self.plain.is_none())?;
+        self.go_back().inspect_err(|_| self.end = Some(AdhesiveEnd::Failed))?;
         if let Some(plain) = &mut self.plain {
             plain.turn(direction, targets.all());
         }
@@ -203,7 +201,7 @@ impl AdhesivePath {
             return Ok(());
         }
         self.queue.clear();
-        self.jump = None;
+        (self.jump, self.field) = (None, None);
         let step = self.last.map_or(0, |state| state.step);
         self.front = self.front_at(step);
         self.trace.truncate(step);
@@ -239,7 +237,7 @@ impl AdhesivePath {
             Ok(())
         })?;
         if let Some(plain) = &mut self.plain {
-            plain.skip_to(last.contact.contact_nodes, most)?;
+            plain.skip_to(last.contact, most)?;
         }
         let approach = trace.marks.last().map_or(-self.body.law.range(), |mark| mark.1);
         self.front = Front { nodes, approach, held: Vec::new() };
@@ -311,7 +309,7 @@ impl AdhesivePath {
         if error.is_nan() || error > RECOGNISED * self.body.greatest_length(approach) {
             return Err(not_on_path("approach", of_mark));
         }
-        let mut body = Body::new(Arc::clone(&self.body.problem), self.body.law, self.body.budget);
+        let mut body = self.body.beside();
         body.follow(&front)?;
         let field = body.survey(&front, self.direction.sign())?;
         if let Some(found) = self.other_load(&field, &state.contact, RECOGNISED) {

@@ -1,5 +1,7 @@
 //! Without adhesion, w = 0: the states of the elastic path, there and back.
 
+use std::cmp::Ordering;
+
 use super::state::{AdhesiveEvent, Direction};
 use crate::contact::{ContactState, ContactTarget};
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingPath, LoadingState};
@@ -20,6 +22,8 @@ pub(super) struct Plain {
     /// Where the branch ends, once it has turned: before that the path knows.
     targets: Option<Vec<ContactTarget>>,
     is_at_end: bool,
+    /// The contact of the last state.
+    present: Option<ContactState>,
 }
 
 impl Plain {
@@ -31,6 +35,7 @@ impl Plain {
             direction: Direction::Loading,
             targets: None,
             is_at_end: false,
+            present: None,
         }
     }
 
@@ -41,10 +46,11 @@ impl Plain {
         self.is_at_end = false;
     }
 
-    /// Goes to where `now` nodes are in contact, of a path on which `most` were in contact before.
-    pub(super) fn skip_to(&mut self, now: usize, most: usize) -> Result<(), Error> {
+    /// Goes to a state, of a path on which `most` nodes were in contact before.
+    pub(super) fn skip_to(&mut self, state: ContactState, most: usize) -> Result<(), Error> {
         while self.touches.len() < most && self.touch()? {}
-        self.now = now.min(self.touches.len());
+        self.now = state.contact_nodes.min(self.touches.len());
+        self.present = Some(state);
         Ok(())
     }
 
@@ -53,10 +59,12 @@ impl Plain {
         if self.is_at_end {
             return Ok(None);
         }
-        match self.direction {
+        let next = match self.direction {
             Direction::Loading => self.press(),
             Direction::Unloading => self.release(),
-        }
+        }?;
+        self.present = next.map_or(self.present, |(.., contact)| Some(contact));
+        Ok(next)
     }
 
     /// Whether the branch has ended at a target.
@@ -66,24 +74,35 @@ impl Plain {
 
     /// Lets the path come to one touch more, if there is one.
     fn touch(&mut self) -> Result<bool, Error> {
-        // The targets of the first branch no longer count.
-        if self.path.end().is_some() && self.touches.len() < self.path.grid().nodes() {
-            self.path.continue_to(ContactTarget::AreaFraction(1.0))?;
-        }
-        while let Some(state) = self.path.next().transpose()? {
-            if state.event == ContactEvent::Touch {
-                self.touches.push(state);
-                return Ok(true);
+        let mut goes_on = false;
+        loop {
+            while let Some(state) = self.path.next().transpose()? {
+                if state.event == ContactEvent::Touch {
+                    self.touches.push(state);
+                    return Ok(true);
+                }
             }
+            if goes_on || self.touches.len() == self.path.grid().nodes() {
+                return Ok(false);
+            }
+            // The targets of the first branch no longer count, also if it had not come to them.
+            self.path.continue_to(ContactTarget::AreaFraction(1.0))?;
+            goes_on = true;
         }
-        Ok(false)
     }
 
     fn press(&mut self) -> Result<Option<Happened>, Error> {
         if self.targets.is_none() {
             let Some(state) = self.path.next().transpose()? else {
-                // A path that ends at an area has no state there but the last touch.
-                self.is_at_end = self.path.end() == Some(LoadingEnd::AreaFraction);
+                // A path that ends at an area has no state there but the last touch, nor has one whose last touch is
+                // at the very target.
+                let ends = [
+                    LoadingEnd::Load,
+                    LoadingEnd::Approach,
+                    LoadingEnd::MeanGap,
+                    LoadingEnd::AreaFraction,
+                ];
+                self.is_at_end = self.path.end().is_some_and(|end| ends.contains(&end));
                 return Ok(None);
             };
             if state.event != ContactEvent::Touch {
@@ -144,17 +163,37 @@ impl Plain {
             let order = a.contact.order(&b.contact);
             if way > 0.0 { order } else { order.reverse() }
         });
-        Ok(first.map(|state| (AdhesiveEvent::Limit, state.node, state.contact)))
+        let Some(first) = first else { return Ok(None) };
+        let node = first.node;
+        // What is reached already is where the path is.
+        let passed = self.present.filter(|present| {
+            let order = first.contact.order(present);
+            if way > 0.0 { order == Ordering::Less } else { order == Ordering::Greater }
+        });
+        let found = passed.unwrap_or(first.contact);
+        // Of nodes that touch together some may be in contact, and have to stay.
+        let contact = match self.now.checked_sub(1).map(|last| self.touches[last].contact) {
+            Some(since) if found.contact_nodes != self.now => ContactState {
+                contact_stiffness: since.contact_stiffness,
+                interfacial_stiffness: since.interfacial_stiffness,
+                energy: found.energy,
+                ..ContactState::new(&grid, self.now, found.approach, found.load, found.mean_gap)
+            },
+            _ => found,
+        };
+        Ok(Some((AdhesiveEvent::Limit, node, contact)))
     }
 }
 
-/// Whether a target lies before a state on the way of a branch, 1 or −1.
+/// Whether a target lies before a state on the way of a branch, 1 or −1; on the way back also if it lies at it: the
+/// node that touched there is in contact still.
 fn is_beyond(state: &ContactState, target: &ContactTarget, grid: &Grid, way: f64) -> bool {
+    let is_past = |left: f64| left > 0.0 || way < 0.0 && left == 0.0;
     match *target {
-        ContactTarget::Load(load) => way * (state.load - load) > 0.0,
-        ContactTarget::MeanPressure(p) => way * (state.load - p * grid.nominal_area()) > 0.0,
-        ContactTarget::Approach(approach) => way * (state.approach - approach) > 0.0,
-        ContactTarget::MeanGap(gap) => way * (gap - state.mean_gap) > 0.0,
+        ContactTarget::Load(load) => is_past(way * (state.load - load)),
+        ContactTarget::MeanPressure(p) => is_past(way * (state.load - p * grid.nominal_area())),
+        ContactTarget::Approach(approach) => is_past(way * (state.approach - approach)),
+        ContactTarget::MeanGap(gap) => is_past(way * (gap - state.mean_gap)),
         ContactTarget::AreaFraction(fraction) => grid.nodes_in(fraction).is_ok_and(|nodes| {
             let (nodes, contact) = (nodes as f64, state.contact_nodes as f64);
             // On the way down the end is where the last of these nodes touched: its pressure is 0 there.

@@ -24,6 +24,8 @@ pub(super) struct Measured {
     pub(super) mean_gap: [f64; 2],
     /// Rates of the load far below this stiffness are rounding \[N/m\].
     pub(super) stiffness: f64,
+    /// Loads are differences of forces as large as this, and approaches and gaps of lengths.
+    pub(super) units: [f64; 2],
     /// Whether all nodes touch: mean planes of a periodic half-space do not approach any more then.
     pub(super) is_full: bool,
 }
@@ -31,6 +33,10 @@ pub(super) struct Measured {
 /// Rates below this part of their unit are rounding: of lengths 1, the rate of a free surface, and of loads
 /// [`Measured::stiffness`].
 const LEAST_RATE: f64 = 1e-11;
+
+/// What is nearer than this part of its unit is at a target: a solution at the end of a window may be just beyond one
+/// that the window just did not reach.
+const NEAR: f64 = 1e-12;
 
 impl Targets {
     /// # Errors
@@ -68,11 +74,29 @@ impl Targets {
         &self.targets
     }
 
-    /// `Ok` if all lie ahead of a state.
+    /// The nearest of each kind, from first touch on.
+    pub(super) fn nearest(&self) -> impl Iterator<Item = ContactTarget> {
+        let mut nearest: [Option<(f64, ContactTarget)>; 4] = [None; 4];
+        for &target in &self.targets {
+            let (kind, way) = match target {
+                ContactTarget::Load(load) | ContactTarget::MeanPressure(load) => (0, load),
+                ContactTarget::Approach(approach) => (1, approach),
+                ContactTarget::MeanGap(gap) => (2, -gap),
+                ContactTarget::AreaFraction(fraction) => (3, fraction),
+            };
+            if nearest[kind].is_none_or(|(other, _)| way < other) {
+                nearest[kind] = Some((way, target));
+            }
+        }
+        nearest.into_iter().flatten().map(|(_, target)| target)
+    }
+
+    /// `Ok` if all lie ahead of a state, or at it but for rounding. From where the surfaces are apart a load that pulls is one, if they stick.
     pub(super) fn check_ahead(
         &self,
         state: &ContactState,
         direction: Direction,
+        sticks: bool,
     ) -> Result<(), Error> {
         let sign = direction.sign();
         for target in &self.targets {
@@ -85,8 +109,10 @@ impl Targets {
                     ("contact area fraction", fraction, state.contact_area_fraction, sign)
                 }
             };
-            let is_apart = state.load == 0.0 && direction == Direction::Loading;
-            if way * (value - present) < 0.0 && !(quantity == "load" && is_apart) {
+            let is_apart = state.contact_nodes == 0 && state.load == 0.0;
+            let pulls = sticks && is_apart && direction == Direction::Loading;
+            let rounding = NEAR * value.abs().max(present.abs());
+            if way * (value - present) < -rounding && !(quantity == "load" && pulls) {
                 return Err(AdhesionError::Behind { quantity, value, present }.into());
             }
         }
@@ -96,30 +122,35 @@ impl Targets {
     /// When the first is reached that is not an area; infinity if none is as long as nothing happens.
     pub(super) fn time(&self, gauge: Gauge, measured: &Measured, direction: Direction) -> f64 {
         let sign = direction.sign();
-        let Measured { approach, load, mean_gap, stiffness, is_full } = *measured;
+        let Measured { approach, load, mean_gap, stiffness, units: [force, length], is_full } =
+            *measured;
         let ([load, load_rate], [gap, gap_rate]) = (load, mean_gap);
         let stands = is_full && gauge.displacement(1.0) > 0.0;
         let times = self.targets.iter().map(|target| {
-            let (left, rate, unit) = match *target {
+            let (left, near, rate, unit) = match *target {
                 // The load may rise or fall on either branch.
                 ContactTarget::Load(to) => {
-                    ((to - load).abs(), (to - load).signum() * load_rate, stiffness)
+                    let left = to - load;
+                    (left.abs(), NEAR * force, left.signum() * load_rate, stiffness)
                 }
                 ContactTarget::Approach(to) => (
                     sign * (to - gauge.reported_approach(approach, load)),
+                    NEAR * length,
                     if stands { 0.0 } else { 1.0 - sign * gauge.displacement(load_rate) },
                     1.0,
                 ),
                 ContactTarget::MeanGap(to) => {
-                    (sign * (gap - to), if is_full { 0.0 } else { -sign * gap_rate }, 1.0)
+                    let rate = if is_full { 0.0 } else { -sign * gap_rate };
+                    (sign * (gap - to), NEAR * length, rate, 1.0)
                 }
                 ContactTarget::AreaFraction(_) | ContactTarget::MeanPressure(_) => {
                     return f64::INFINITY;
                 }
             };
-            if left == 0.0 {
+            // All lie ahead where the branch begins: what is behind has just been passed.
+            if left <= near {
                 0.0
-            } else if left > 0.0 && rate > LEAST_RATE * unit {
+            } else if rate > LEAST_RATE * unit {
                 left / rate
             } else {
                 f64::INFINITY
@@ -153,10 +184,9 @@ impl Targets {
         self.is_reached(state.contact_nodes, direction) || self.targets.iter().any(is_beyond)
     }
 
-    /// Gives a state at a target the very value that was asked for; loads are differences of forces as large as this,
-    /// and approaches and gaps of lengths.
+    /// Gives a state at a target the very value that was asked for; the units are those of [`Measured`].
     pub(super) fn place(&self, state: &mut ContactState, [force, length]: [f64; 2]) {
-        let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= 1e-12 * unit;
+        let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= NEAR * unit;
         for target in &self.targets {
             match *target {
                 ContactTarget::Load(load) if is_near(load, state.load, force) => {

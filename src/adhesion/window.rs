@@ -176,6 +176,8 @@ struct Play<'a> {
     /// Whether it has begun along the pull of a node, and not along the approach.
     is_in_jump: bool,
     grid: Grid,
+    /// The greatest length, of which approaches and gaps are differences.
+    length: f64,
     approach: f64,
     /// Until then nothing happens to a node that is not watched, as far as its rate at the beginning tells.
     horizon: f64,
@@ -281,6 +283,7 @@ impl<'a> Play<'a> {
             begun,
             is_in_jump: !front.held.is_empty(),
             grid: body.problem.grid(),
+            length: body.greatest_length(front.approach),
             approach: front.approach,
             horizon,
             end: horizon,
@@ -466,15 +469,7 @@ impl<'a> Play<'a> {
     fn step(&mut self, most: usize) -> bool {
         let next = self.board.next();
         let until = next.map_or(f64::INFINITY, |(time, _)| time);
-        let [[pressures, pressure_rate], [gaps, gap_rate]] = self.moment().sums;
-        let measured = Measured {
-            approach: self.approach,
-            load: [pressures, pressure_rate].map(|sum| self.area() * sum),
-            mean_gap: [gaps, gap_rate].map(|sum| sum / self.grid.nodes() as f64),
-            stiffness: self.area() * self.board.law().slope(),
-            is_full: self.board.contact_nodes == self.grid.nodes(),
-        };
-        let limit = self.view.targets.time(self.view.gauge, &measured, self.view.direction);
+        let limit = self.limit();
         let first = until.min(limit);
         let is_enough = self.is_enough(most, next);
         if first == f64::INFINITY || self.events > 0 && (self.time + first > self.end || is_enough)
@@ -482,17 +477,20 @@ impl<'a> Play<'a> {
             return false;
         }
         self.advance(first);
-        let is_full = |place: usize| {
-            let state = self.board.rows[place].state;
-            let touches = state == NodeState::Cohesive
-                || state == NodeState::Soft && self.board.law().flat_range() == 0.0;
-            touches
-                && self.board.closes(place)
-                && self.view.targets.is_full(self.board.contact_nodes, self.view.direction)
-        };
-        let place = match next {
-            Some((_, place)) if until <= limit && !is_full(place) => place,
+        let place = next.filter(|_| until <= limit).map(|(_, place)| place);
+        let place = place.filter(|&place| !self.is_too_many(place));
+        // Behind a jump the target would be passed: where it ties with the beginning of one, it comes first.
+        let ties = limit - until <= ROUNDING * self.length;
+        let is_before_jump = ties
+            && place.is_some_and(|place| {
+                !self.board.lacks_others(place) && self.board.begins_jump(place)
+            });
+        let place = match place {
+            Some(place) if !is_before_jump => place,
             _ => {
+                if is_before_jump {
+                    self.advance(limit - first);
+                }
                 let node = self.board.changes.last().map_or(self.view.last_node, |last| last.node);
                 self.note();
                 self.push(AdhesiveEvent::Limit, node, self.moment(), self.board.changes.len());
@@ -526,6 +524,37 @@ impl<'a> Play<'a> {
         let is_few = event == AdhesiveEvent::Part
             && self.view.targets.is_reached(self.board.contact_nodes, self.view.direction);
         !is_few && !self.board.is_worn
+    }
+
+    /// Whether what comes next to a row is a node more in contact than a target has.
+    fn is_too_many(&self, place: usize) -> bool {
+        let state = self.board.rows[place].state;
+        let touches = state == NodeState::Cohesive
+            || state == NodeState::Soft && self.board.law().flat_range() == 0.0;
+        touches
+            && self.board.closes(place)
+            && self.view.targets.is_full(self.board.contact_nodes, self.view.direction)
+    }
+
+    /// When a target is reached, as long as nothing happens.
+    fn limit(&self) -> f64 {
+        let View { targets, gauge, direction, .. } = *self.view;
+        if targets.is_reached(self.board.contact_nodes, direction) {
+            return 0.0;
+        }
+        let Moment { sums: [[pressures, pressure_rate], [gaps, gap_rate]], pulled, .. } =
+            self.moment();
+        let load = [pressures, pressure_rate].map(|sum| self.area() * sum);
+        let pull = self.area() * self.board.law().stress() * pulled.iter().sum::<usize>() as f64;
+        let measured = Measured {
+            approach: self.approach,
+            load,
+            mean_gap: [gaps, gap_rate].map(|sum| sum / self.grid.nodes() as f64),
+            stiffness: self.area() * self.board.law().slope(),
+            units: [pull + load[0].abs(), self.length],
+            is_full: self.board.contact_nodes == self.grid.nodes(),
+        };
+        targets.time(gauge, &measured, direction)
     }
 
     /// Whether there have been `most` events and the next one does not come at once. Events of one instant belong in

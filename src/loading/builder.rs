@@ -16,14 +16,15 @@ use super::phase::Phase;
 use super::plastic::Plastic;
 use super::releases::Releases;
 use super::rule::ContactRule;
-use super::run::{LoadingRun, LoadingTimings, Memory};
+use super::run::{LoadingRun, LoadingTimings};
 use super::scalars::PathScalars;
 use super::single::Single;
 use super::solver::LoadingSolver;
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
 use crate::hardness::Limit;
+use crate::memory::{self, Memory};
 use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
-use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, memory};
+use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface};
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
 #[derive(Debug, Clone)]

@@ -322,9 +322,9 @@ fn rest(run: &LoadingRun, count: usize, end: usize) -> Rest {
 mod tests {
     use super::*;
     use crate::loading::event_cost::last_factor;
-    use crate::loading::run::Memory;
     use crate::loading::test_chain::{self, Altered};
     use crate::loading::{LoadingSolver, LoadingState};
+    use crate::memory::Memory;
     use crate::surface::{Amplitude, SelfAffine};
     use crate::updater::Handover;
     use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, Spectral};

@@ -13,6 +13,7 @@ use super::state::{ContactEvent, LoadingState};
 use super::sum::Sum;
 use super::window::{BadPivot, Window};
 use crate::contact::{ContactSequence, ContactState};
+use crate::memory::Memory;
 use crate::updater::{Behind, Iterations, LinearUpdater, Schur, Solution, WindowFactor};
 use crate::{Boundary, ContactGrowth, Error, Grid, Problem, UpdaterError};
 
@@ -34,42 +35,6 @@ pub struct LoadingTimings {
     pub choice: Duration,
     /// Events inside the windows.
     pub events: Duration,
-}
-
-/// Bytes that a path may hold, and those that it holds whatever the number of nodes in contact, in proportion to
-/// the grid.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Memory {
-    pub(super) budget: usize,
-    pub(super) fixed: usize,
-}
-
-impl Memory {
-    /// The memory budget of updater and iterations.
-    pub(super) fn left(&self) -> usize {
-        self.budget.saturating_sub(self.fixed)
-    }
-
-    /// `Ok` if `needed` bytes beside the fixed ones are within the budget; `fit` nodes in contact are.
-    pub(super) fn check(&self, needed: usize, fit: usize) -> Result<(), Error> {
-        let needed = needed.saturating_add(self.fixed);
-        if needed <= self.budget {
-            return Ok(());
-        }
-        Err(Error::MemoryBudget { needed, budget: self.budget, nodes_that_fit: fit })
-    }
-
-    /// An error of the updater, which knows only of what is left to it, in terms of the whole.
-    pub(super) fn in_all(&self, error: Error) -> Error {
-        match error {
-            Error::MemoryBudget { needed, nodes_that_fit, .. } => Error::MemoryBudget {
-                needed: needed.saturating_add(self.fixed),
-                budget: self.budget,
-                nodes_that_fit,
-            },
-            other => other,
-        }
-    }
 }
 
 /// A path under way, apart from what solves on its contact.

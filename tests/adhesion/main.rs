@@ -3,6 +3,7 @@
 
 mod closed_forms;
 mod equilibria;
+mod met_exactly;
 mod reference_branches;
 mod special;
 mod targets;

@@ -1,0 +1,264 @@
+//! Targets at the very values of events, and targets that are met already.
+
+use asperity::adhesion::{
+    Adhesion, AdhesiveBuilder, AdhesiveEnd, AdhesiveEvent, AdhesivePath, AdhesiveState,
+};
+use asperity::record::AdhesiveRecord;
+use asperity::surface::{Amplitude, SelfAffine};
+use asperity::{
+    AdhesionError, Boussinesq, ContactState, ContactTarget, Error, Grid, InfluenceKernel,
+    PeriodicBoussinesq,
+};
+
+fn surface() -> SelfAffine {
+    SelfAffine::new(0.8, 0.5, 0.25, Amplitude::RmsHeight(0.02), 5).unwrap()
+}
+
+fn kernels() -> [Box<dyn InfluenceKernel>; 2] {
+    let grid = Grid::square(10, 1.0).unwrap();
+    [
+        Box::new(Boussinesq::new(grid, 1.0).unwrap()),
+        Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()),
+    ]
+}
+
+/// With so few nodes to a window there are many ends of windows, at which a target is just ahead or just passed.
+fn builder<'a>(
+    surface: &'a SelfAffine,
+    kernel: &'a dyn InfluenceKernel,
+    work: f64,
+) -> AdhesiveBuilder<'a> {
+    AdhesivePath::builder(surface, kernel, Adhesion::work(work)).window_size(3)
+}
+
+fn run(path: &mut AdhesivePath) -> Vec<AdhesiveState> {
+    path.by_ref().map(|state| state.unwrap()).collect()
+}
+
+/// What a state has, as targets.
+fn targets_at(contact: &ContactState) -> [ContactTarget; 3] {
+    [
+        ContactTarget::Load(contact.load),
+        ContactTarget::Approach(contact.approach),
+        ContactTarget::MeanGap(contact.mean_gap),
+    ]
+}
+
+/// What a target asks for, and what a state has of it.
+fn compared(target: ContactTarget, contact: &ContactState) -> [f64; 2] {
+    match target {
+        ContactTarget::Load(load) => [load, contact.load],
+        ContactTarget::Approach(approach) => [approach, contact.approach],
+        ContactTarget::MeanGap(gap) => [gap, contact.mean_gap],
+        _ => unreachable!(),
+    }
+}
+
+/// Whether rounding puts an event before a target at its value or behind it, the branch ends there: on loading and on
+/// unloading, also at the state at which a jump begins.
+#[test]
+fn targets_at_the_values_of_events_are_met() {
+    let surface = surface();
+    let (mut met, mut jumps) = (0, 0);
+    for (kernel, work) in kernels().iter().flat_map(|kernel| [4e-4, 4e-3].map(|w| (kernel, w))) {
+        let most = ContactTarget::AreaFraction(0.5);
+        let mut whole = builder(&surface, &**kernel, work).until(most).build().unwrap();
+        let loading = run(&mut whole);
+        whole.unload().unwrap();
+        let unloading = run(&mut whole);
+        for (k, state) in loading.iter().chain(&unloading).enumerate() {
+            let is_apart = state.contact.contact_nodes == 0 && state.soft_nodes == 0;
+            if state.event == AdhesiveEvent::JumpEnd || is_apart || k + 1 == loading.len() {
+                continue;
+            }
+            let turned = loading.last().unwrap().contact.load;
+            for target in targets_at(&state.contact) {
+                // A load that only rises on the way back is refused.
+                let is_load = matches!(target, ContactTarget::Load(_));
+                if k >= loading.len() && is_load && state.contact.load > turned {
+                    continue;
+                }
+                let mut path = builder(&surface, &**kernel, work);
+                if k < loading.len() {
+                    path = path.until(target);
+                } else {
+                    path = path.until(most);
+                }
+                let mut path = path.build().unwrap();
+                let mut states = run(&mut path);
+                if k >= loading.len() {
+                    path.unload_to(target).unwrap();
+                    states = run(&mut path);
+                }
+                let last = states.last().unwrap();
+                let [asked, found] = compared(target, &last.contact);
+                assert_eq!(
+                    (path.end(), found),
+                    (Some(AdhesiveEnd::Target), asked),
+                    "{work} {k} {target:?} {last:?}"
+                );
+                met += 1;
+                jumps += usize::from(state.event == AdhesiveEvent::JumpStart);
+            }
+        }
+    }
+    assert!(met > 1000 && jumps > 30, "{met} {jumps}");
+}
+
+/// Without adhesion there and back, and a record is made of every one.
+#[test]
+fn without_adhesion_targets_at_touches_are_met() {
+    let surface = surface();
+    for kernel in kernels() {
+        let build = |target| builder(&surface, &*kernel, 0.0).until(target).build().unwrap();
+        let most = ContactTarget::AreaFraction(0.3);
+        let touches = run(&mut build(most));
+        for (k, touch) in touches.iter().enumerate().skip(1).take(touches.len() - 2) {
+            for target in targets_at(&touch.contact) {
+                let mut path = build(target);
+                let first = run(&mut path);
+                let [asked, found] = compared(target, &path.state().unwrap().contact);
+                assert_eq!((path.end(), found), (Some(AdhesiveEnd::Target), asked), "{k}");
+                // From there on as if nothing had been.
+                path.load_to(most).unwrap();
+                let later = run(&mut path);
+                let own = first.iter().chain(&later).filter(|s| s.event == AdhesiveEvent::Touch);
+                let own: Vec<ContactState> = own.map(|state| state.contact).collect();
+                assert_eq!(own.len(), touches.len(), "{k} {target:?}");
+                // Windows that begin at the first target round otherwise.
+                let kind = targets_at(&touch.contact).iter().position(|other| *other == target);
+                let target = targets_at(&own[k])[kind.unwrap()];
+                path.unload_to(target).unwrap();
+                run(&mut path);
+                let back = path.state().unwrap();
+                let [asked, found] = compared(target, &back.contact);
+                assert_eq!((path.end(), found), (Some(AdhesiveEnd::Target), asked), "{k}");
+                // The node that touched there is in contact, with no pressure.
+                assert_eq!((back.event, back.contact.contact_nodes), (AdhesiveEvent::Limit, k + 1));
+            }
+        }
+        let (low, high) = (touches[5].contact, touches[touches.len() - 2].contact);
+        for (near, far) in targets_at(&low).into_iter().zip(targets_at(&high)) {
+            for pair in [[near, far], [far, near]] {
+                let path = builder(&surface, &*kernel, 0.0).until(pair[0]).until(pair[1]);
+                let mut path = path.build().unwrap();
+                let states = run(&mut path);
+                let [asked, found] = compared(near, &states.last().unwrap().contact);
+                assert_eq!(found, asked, "of {pair:?} the first that is reached");
+                let (load, all) = (ContactTarget::Load(high.load), states.len());
+                path.load_to(load).unwrap();
+                let more = run(&mut path);
+                path.unload_to(near).unwrap();
+                let back = run(&mut path);
+                let states = [states, more, back].concat().into_iter().collect();
+                assert!(AdhesiveRecord::new(&path, states).is_ok(), "{pair:?} {all}");
+            }
+        }
+    }
+}
+
+/// A branch that was left before its end has no say in the next one.
+#[test]
+fn without_adhesion_an_early_turn_forgets_the_first_target() {
+    let surface = surface();
+    for kernel in kernels() {
+        let whole = builder(&surface, &*kernel, 0.0).until(ContactTarget::AreaFraction(0.5));
+        let whole = run(&mut whole.build().unwrap());
+        let (near, far) = (whole[12].contact, whole[25].contact);
+        for target in targets_at(&near).into_iter().chain([ContactTarget::AreaFraction(0.15)]) {
+            for asked in targets_at(&far).into_iter().chain([ContactTarget::AreaFraction(0.3)]) {
+                let mut path = builder(&surface, &*kernel, 0.0).until(target).build().unwrap();
+                assert_eq!(path.by_ref().take(3).count(), 3);
+                path.unload().unwrap();
+                assert_eq!(run(&mut path).len(), 3);
+                path.load_to(asked).unwrap();
+                let last = *run(&mut path).last().unwrap();
+                assert_eq!(path.end(), Some(AdhesiveEnd::Target), "{target:?} {asked:?}");
+                match asked {
+                    ContactTarget::AreaFraction(_) => assert_eq!(last.contact.contact_nodes, 30),
+                    _ => {
+                        let [asked, found] = compared(asked, &last.contact);
+                        assert_eq!(found, asked);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What is met already is where the path is.
+#[test]
+fn what_is_met_already_changes_nothing() {
+    let surface = surface();
+    for (kernel, work) in kernels().iter().flat_map(|kernel| [0.0, 4e-4].map(|w| (kernel, w))) {
+        let path = builder(&surface, &**kernel, work).until(ContactTarget::AreaFraction(0.4));
+        let states = run(&mut path.build().unwrap());
+        let [.., before, last] = &states[..] else { panic!() };
+        let load = ContactTarget::Load(0.5 * (before.contact.load + last.contact.load));
+        let path = builder(&surface, &**kernel, work).until(load);
+        let mut path = path.build().unwrap();
+        run(&mut path);
+        let here = path.state().unwrap();
+        let area = ContactTarget::AreaFraction(here.contact.contact_area_fraction);
+        for target in targets_at(&here.contact) {
+            path.load_to(target).unwrap();
+            assert_eq!(
+                run(&mut path).last().unwrap().contact.contact_nodes,
+                here.contact.contact_nodes
+            );
+            // Of an approach or a gap the load is interpolated.
+            let is_here = |load: f64| (load / here.contact.load - 1.0).abs() < 1e-13;
+            assert!(is_here(path.state().unwrap().contact.load), "{work} {target:?}");
+            path.unload_to(target).unwrap();
+            run(&mut path);
+            assert!(is_here(path.state().unwrap().contact.load), "{work} {target:?}");
+        }
+        path.load_to(area).unwrap();
+        let states = run(&mut path);
+        // Not back to where the last of these nodes touched, and not beyond the next touch.
+        assert!(states.iter().all(|state| state.contact.load >= here.contact.load), "{work}");
+        let there = path.state().unwrap().contact;
+        assert_eq!(
+            (path.end(), there.contact_nodes),
+            (Some(AdhesiveEnd::Target), here.contact.contact_nodes)
+        );
+        path.unload_to(area).unwrap();
+        run(&mut path);
+        assert_eq!(
+            path.state().unwrap().contact.contact_nodes,
+            here.contact.contact_nodes,
+            "{work}"
+        );
+    }
+}
+
+/// Targets behind the state: before the first one too, at no net load, and pulls where nothing sticks.
+#[test]
+fn what_lies_behind_is_refused() {
+    let surface = surface();
+    let is_behind = |done: Result<(), Error>| {
+        matches!(done, Err(Error::Adhesion(AdhesionError::Behind { .. })))
+    };
+    for kernel in kernels() {
+        let sticky = || builder(&surface, &*kernel, 4e-4).build().unwrap();
+        for target in [ContactTarget::Approach(-10.0), ContactTarget::MeanGap(10.0)] {
+            assert!(is_behind(sticky().load_to(target)), "{target:?}");
+        }
+        let mut path = sticky();
+        path.load_to(ContactTarget::Load(-1e-6)).unwrap();
+        assert_eq!(run(&mut path).last().unwrap().contact.load, -1e-6);
+        path.load_to(ContactTarget::Load(1e-3)).unwrap();
+        run(&mut path);
+        path.unload_to(ContactTarget::Load(0.0)).unwrap();
+        run(&mut path);
+        assert!(path.state().unwrap().soft_nodes > 0);
+        assert!(is_behind(path.load_to(ContactTarget::Load(-1e-6))));
+        let mut plain = builder(&surface, &*kernel, 0.0).build().unwrap();
+        assert!(is_behind(plain.load_to(ContactTarget::Load(-1.0))));
+        plain.load_to(ContactTarget::Load(1e-3)).unwrap();
+        assert_eq!(run(&mut plain).last().unwrap().contact.load, 1e-3);
+        plain.unload().unwrap();
+        run(&mut plain);
+        assert!(is_behind(plain.load_to(ContactTarget::Load(-1.0))));
+    }
+}
