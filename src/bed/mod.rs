@@ -339,7 +339,7 @@ impl<'a> Bed<'a> {
     ///
     /// Those of [`Self::at_load`].
     pub fn path_state(&self, load: f64) -> Result<LoadingState, Error> {
-        self.at_load(load)?;
+        let load = self.at_load(load)?.load;
         self.history.at(ContactTarget::Load(load))
     }
 

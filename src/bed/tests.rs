@@ -68,6 +68,29 @@ fn a_superposition_of_two_increments() -> Result<(), Error> {
     Ok(())
 }
 
+/// What is beyond the last load by rounding has the fields of the last, bit for bit; and nothing beyond has any.
+#[test]
+fn fields_beyond_the_last_load_by_rounding_are_the_last() -> Result<(), Error> {
+    let (mut path, history) = chain()?;
+    let bed = Bed::new(&history)?;
+    let mut fields = |end: f64| -> Result<_, Error> {
+        let state = Superposition::new([(0.5, 1.0), (end, 0.5)])?;
+        Ok([
+            state.pressure(&bed, &mut path)?,
+            state.displacement(&bed, &mut path)?,
+            state.gap_change(&bed, &mut path)?,
+        ])
+    };
+    let expected = fields(2.5)?;
+    for beyond in [2.5_f64.next_up(), 2.5 * (1.0 + 5e-13)] {
+        assert_eq!(fields(beyond)?, expected);
+        assert_eq!(bed.path_state(beyond)?, bed.path_state(2.5)?);
+    }
+    let refused = fields(2.5 * (1.0 + 2e-12));
+    assert!(matches!(refused, Err(Error::Bed(BedError::PathEndsBefore { .. }))), "{refused:?}");
+    Ok(())
+}
+
 /// Scalars of superpositions of many pieces are those of their fields, on a free and on a periodic half-space.
 #[test]
 fn scalars_are_those_of_the_fields() -> Result<(), Error> {

@@ -112,6 +112,8 @@ impl<'a> SlipHistory<'a> {
     pub fn to(&mut self, load: f64, tangential_load: f64) -> Result<SlipState, Error> {
         self.bed.history().layering().check(Theory::Slip)?;
         let target = self.bed.at_load(load)?;
+        // What is beyond the last load by rounding is that.
+        let load = target.load;
         let before = self.load.load;
         let force = borne(&self.friction, (load, load.max(before)), tangential_load)?;
         // Loads that are computed differ by their rounding, and do not make all stick.

@@ -4,7 +4,8 @@ use asperity::bed::Bed;
 use asperity::loading::History;
 use asperity::slip::{Friction, PartialSlip, SlipHistory, SlipState, SlipZone};
 use asperity::{
-    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SlipError,
+    BedError, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
+    SlipError,
 };
 use asperity_testing::close::relative;
 use proptest::prelude::*;
@@ -468,4 +469,31 @@ fn proportional_loading_does_not_slip() {
     assert!(lost > 0.0);
     joint.to(top.load, 0.0).unwrap();
     assert_eq!((joint.state().displacement, joint.dissipation()), (0.0, lost));
+}
+
+/// A load that is the last of the path but for the rounding of a sum is that load, whatever came before it: the same
+/// bits.
+#[test]
+fn a_load_beyond_the_last_by_rounding_is_the_last() {
+    let (mut path, history) = path(2);
+    let bed = Bed::new(&history).unwrap();
+    let last = bed.last_load();
+    for before in [None, Some(0.3), Some(1.0)] {
+        let mut follow = |load: f64| {
+            let mut joint = SlipHistory::new(&bed, friction());
+            if let Some(part) = before {
+                joint.to(part * last, -0.05 * part * last).unwrap();
+            }
+            let state = joint.to(load, 0.1 * last).unwrap();
+            (state, joint.dissipation(), joint.traction(&mut path).unwrap())
+        };
+        let expected = follow(last);
+        assert!((expected.0.tangential_load / (0.1 * last) - 1.0).abs() < 1e-13);
+        assert!(expected.0.displacement > 0.0 && expected.0.stick_nodes > 0);
+        for beyond in [last.next_up(), last * (1.0 + 5e-13), last * (1.0 + 9e-13)] {
+            assert_eq!(follow(beyond), expected, "{before:?}");
+        }
+    }
+    let refused = SlipHistory::new(&bed, friction()).to(last * (1.0 + 2e-12), 0.0);
+    assert!(matches!(refused, Err(Error::Bed(BedError::PathEndsBefore { .. }))), "{refused:?}");
 }
