@@ -64,8 +64,8 @@ impl Seal {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of [`History::contact_sequence`]
-    /// for states that are no path.
+    /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of
+    /// [`History::contact_sequence`] for states that are no path.
     pub fn curve(
         &self,
         path: &mut LoadingPath,
@@ -74,20 +74,19 @@ impl Seal {
     ) -> Result<LeakCurve, Error> {
         Error::require("number of states", states as f64, states > 1, "two or more")?;
         let events = history.states();
-        let closing = closing(history, path, self.along())?;
-        let closing = self.closing_by_gap(events, closing, path)?;
-        // Those that may leak: of states at one approach too, since each has its contact.
-        let leaking = closing.unwrap_or(events.len());
-        let mut points: Vec<(usize, LeakPoint)> = Vec::new();
+        let by_contact = closing(history, path, self.along())?;
         let at = |place: usize, path: &mut LoadingPath| -> Result<LeakPoint, Error> {
             let state = events[place];
             Ok(LeakPoint::new(state, &self.leak_at(path, &state)?))
         };
-        for place in [Some(0), leaking.checked_sub(1), closing].into_iter().flatten() {
-            let is_new = points.last().is_none_or(|(last, _)| *last < place);
-            if is_new && place < events.len() {
-                points.push((place, at(place, path)?));
-            }
+        let (closing, last) = self.closing_by_gap(events, by_contact, |place| at(place, path))?;
+        let mut points: Vec<Placed> = Vec::new();
+        if last.is_some_and(|(place, _)| place > 0) {
+            points.push((0, at(0, path)?));
+        }
+        points.extend(last);
+        if let Some(place) = closing {
+            points.push((place, at(place, path)?));
         }
         while points.len() < states
             && let Some(before) = widest(&points)
@@ -101,30 +100,47 @@ impl Seal {
     }
 }
 
+/// The place of a state, and its leak.
+type Placed = (usize, LeakPoint);
+
 impl Seal {
-    /// The place of the first state at which no channel wider than the least gap is left, up to the `closing` by
-    /// contact: gaps only become narrower under load.
+    /// The place of the first state that does not leak, up to that which closes by contact, and the last that does:
+    /// gaps only become narrower under load. Nodes that touch together are closed with the first of them, and where
+    /// there is a least gap many states do not leak before contact closes.
     fn closing_by_gap(
         &self,
         states: &[LoadingState],
-        closing: Option<usize>,
-        path: &mut LoadingPath,
-    ) -> Result<Option<usize>, Error> {
+        by_contact: Option<usize>,
+        mut at: impl FnMut(usize) -> Result<LeakPoint, Error>,
+    ) -> Result<(Option<usize>, Option<Placed>), Error> {
+        let end = by_contact.unwrap_or(states.len());
         // Where nodes leave the contact gaps widen again.
-        let widens = || states.iter().any(|state| state.event == ContactEvent::Release);
-        if self.least_gap() == 0.0 || widens() {
-            return Ok(closing);
+        if states.iter().any(|state| state.event == ContactEvent::Release) {
+            let last = end.checked_sub(1);
+            let last = last.map(|place| Ok::<_, Error>((place, at(place)?))).transpose()?;
+            return Ok((by_contact, last));
         }
-        let end = closing.unwrap_or(states.len());
-        let (mut open, mut closed) = (0, end);
-        while open < closed {
-            let middle = open.midpoint(closed);
-            match self.leak_at(path, &states[middle])?.is_closed() {
-                true => closed = middle,
-                false => open = middle + 1,
+        // In strides backwards, each twice as long, and then by halves.
+        let mut stride = if self.least_gap() == 0.0 { 1 } else { end.div_ceil(2) };
+        let (mut closed, mut last) = (end, None::<Placed>);
+        loop {
+            let open = last.map_or(0, |(place, _)| place + 1);
+            if open == closed {
+                break;
+            }
+            let place = match last {
+                None => closed.saturating_sub(stride),
+                Some(_) => open.midpoint(closed),
+            };
+            let point = at(place)?;
+            if point.leak_rate == 0.0 {
+                closed = place;
+                stride *= 2;
+            } else {
+                last = Some((place, point));
             }
         }
-        Ok(if closed < end { Some(closed) } else { closing })
+        Ok((if closed < end { Some(closed) } else { by_contact }, last))
     }
 }
 
@@ -149,10 +165,9 @@ fn closing(history: &History, path: &LoadingPath, along: Axis) -> Result<Option<
 }
 
 /// The point before the widest interval in which there are more states.
-fn widest(points: &[(usize, LeakPoint)]) -> Option<usize> {
-    let position = |(_, point): &(usize, LeakPoint)| {
-        (point.state.contact.mean_pressure(), point.leak_rate.ln())
-    };
+fn widest(points: &[Placed]) -> Option<usize> {
+    let position =
+        |(_, point): &Placed| (point.state.contact.mean_pressure(), point.leak_rate.ln());
     let range = |of: fn(&(f64, f64)) -> f64| {
         let values = points.iter().map(position).map(|at| of(&at)).filter(|v| v.is_finite());
         let (least, most) =

@@ -251,7 +251,7 @@ mod tests {
         let gap = DMatrix::from_fn(nx, ny, |_, _| 10_f64.powf(-decades * random()));
         let closed = gap.map(|_| random() < 0.25);
         let network =
-            Network::new(&gap, &closed, (&Grid::new(nx, ny, 3.0, 1.0)?, boundary), Axis::X)?;
+            Network::new(&gap, &closed, 0.0, (&Grid::new(nx, ny, 3.0, 1.0)?, boundary), Axis::X)?;
         let flowing = network.flowing();
         let eliminated = Flow::through(&network, &flowing)?;
         let mut iterated = Flow::new(&network, &flowing);

@@ -124,9 +124,11 @@ pub(super) struct Network {
 }
 
 impl Network {
+    /// Nothing flows through gaps up to the least.
     pub(super) fn new(
         gap: &DMatrix<f64>,
         contact_map: &DMatrix<bool>,
+        least_gap: f64,
         (grid, boundary): (&Grid, Boundary),
         along: Axis,
     ) -> Result<Self, Error> {
@@ -137,13 +139,14 @@ impl Network {
         let is_one = (1.0 / ASPECT..=ASPECT).contains(&aspect);
         Error::require("ratio of the sides of a cell", aspect, is_one, "between 1e-6 and 1e6")?;
         let open = || gap.iter().zip(contact_map).filter(|(_, closed)| !**closed).map(|(g, _)| *g);
-        let greatest_gap = open().fold(0.0, f64::max);
         let least = open().fold(0.0, f64::min);
-        let is_one = least >= -OVERLAP * greatest_gap;
+        let is_one = least >= -OVERLAP * open().fold(0.0, f64::max);
         Error::require("least gap out of contact", least, is_one, "not negative")?;
+        let greatest_gap = open().filter(|gap| *gap > least_gap).fold(0.0, f64::max);
         let conductivity = |(gap, closed): (&f64, &bool)| {
             let relative = gap / greatest_gap;
-            if *closed || relative.is_nan() || relative < CLOSED { 0.0 } else { relative.powi(3) }
+            let is_open = !*closed && *gap > least_gap && relative >= CLOSED;
+            if is_open { relative.powi(3) } else { 0.0 }
         };
         let conductivity: Vec<f64> = gap.iter().zip(contact_map).map(conductivity).collect();
         let mut network = Self { layout, greatest_gap, places: Vec::new(), conductivity, pools: 0 };
