@@ -88,8 +88,10 @@ impl Steps {
             if length <= 0.0 {
                 continue;
             }
+            // A step that is rounding beside the time leads nowhere.
+            let least = 4.0 * f64::EPSILON * now.abs().max(until.abs());
             // A body that does not creep needs none but for its curve.
-            let mut step = self.first * shortest.unwrap_or(length);
+            let mut step = (self.first * shortest.unwrap_or(length)).max(least);
             let start = now;
             let longest = length / self.least.max(1) as f64;
             loop {
@@ -211,6 +213,30 @@ mod tests {
             assert_eq!(times.len() - 1, count);
             // Sums of so many.
             assert!((times[1] * count as f64 - 1.0).abs() < 1e-14);
+        }
+        Ok(())
+    }
+
+    /// Behind a late corner too, where the shortest relaxation time is less than rounding of the time: as many as
+    /// there are to be at least, each later than the one before, up to the last that a time can tell.
+    #[test]
+    fn steps_behind_late_corners() -> Result<(), Error> {
+        let body = Prony::shares(&[(1e-8, 0.2), (1e7, 0.3)])?;
+        for corners in [[0.0, 3e8, 6e8], [-6e8, -3e8, 0.0], [0.0, 3e8, 3e8 + 1e-3]] {
+            let [begin, late, end] = corners;
+            let load = PiecewiseLinear::new([(begin, 200.0), (late, 200.0), (end, 20.0)])?;
+            for steps in [Steps::default(), Steps { least: 1, ..Steps::default() }] {
+                let times = steps.times(&body, &load, end)?;
+                assert!(times.is_sorted_by(|a, b| a < b));
+                let behind = times.iter().filter(|time| **time > late).count();
+                assert!(behind >= steps.least && behind < 1000, "{corners:?}: {behind}");
+                assert_eq!((times.first(), times.last()), (Some(&begin), Some(&end)));
+                // A time of 3·10⁸ s is right to 6·10⁻⁸ s.
+                let place = times.partition_point(|time| *time <= late);
+                assert_eq!(times[place - 1], late);
+                let first = times[place] - late;
+                assert!(first > 0.0 && first < 1e-6, "{corners:?}: {first:e}");
+            }
         }
         Ok(())
     }

@@ -14,7 +14,9 @@ use crate::{CreepError, Error, LoadingPath};
 pub enum Control {
     /// This load \[N\].
     Load(f64),
-    /// This approach \[m\]; where it is less than what the surface has kept of its dent, the surfaces are apart.
+    /// This approach \[m\]; where it is less than what the surface has kept of its dent, the surfaces are apart. In
+    /// full contact of a periodic half-space, whose mean planes come no closer, any more load has it: the least is
+    /// taken.
     Approach(f64),
 }
 
@@ -354,6 +356,11 @@ impl<'a> ViscoelasticBed<'a> {
         ((self.elements[element].length - history) / step.slope).max(0.0)
     }
 
+    /// How many elements have a length: all but that behind full contact.
+    fn bounded(&self) -> usize {
+        self.elements.partition_point(|element| element.length.is_finite())
+    }
+
     fn front_of_load(&self, step: &Step, load: f64) -> Option<Front> {
         if load == 0.0 {
             return Some(Front { element: 0, force: 0.0, separation: 0.0 });
@@ -392,8 +399,12 @@ impl<'a> ViscoelasticBed<'a> {
         if left <= 0.0 {
             return Some(Front { element: 0, force: 0.0, separation: -left });
         }
+        // In full contact of a periodic half-space mean planes cannot approach: the load is then the least there is.
+        let bounded = self.bounded();
+        let is_rigid = self.elements.get(bounded).is_some_and(|element| element.approach == 0.0);
+        let end = if is_rigid { bounded } else { self.elements.len() };
         let known = self.forces.len();
-        for element in 0..known {
+        for element in 0..known.min(end) {
             let closes = self.elements[element].approach * step.slope * self.full(step, element);
             if left < closes {
                 let force = left / self.elements[element].approach / step.slope;
@@ -402,11 +413,10 @@ impl<'a> ViscoelasticBed<'a> {
             left -= closes;
         }
         // All elements are compressed in full, and by rounding the approach is a little more.
-        if let Some(element) = known.checked_sub(1)
-            && known == self.elements.len()
-            && left <= ROUNDING * approach.abs()
-        {
-            return Some(Front { element, force: self.full(step, element), separation: 0.0 });
+        if known >= end && left <= ROUNDING * approach.abs() {
+            let element = if is_rigid { end } else { end.checked_sub(1)? };
+            let force = if is_rigid { 0.0 } else { self.full(step, element) };
+            return Some(Front { element, force, separation: 0.0 });
         }
         // The others have borne nothing yet: they are those of the path.
         let approaches = self.bed.approaches();
@@ -415,9 +425,12 @@ impl<'a> ViscoelasticBed<'a> {
         let element = after.checked_sub(1).filter(|element| *element >= known)?;
         let Element { knot, length, approach, .. } = self.elements[element];
         let beyond = label - approaches[knot];
-        let force = (beyond / approach).min(length) / step.slope;
-        // In full contact of a periodic half-space the mean planes cannot approach.
-        let is_within = beyond <= length * approach + ROUNDING * label && beyond.is_finite();
+        let (reach, compression) = match approach > 0.0 {
+            true => (length * approach, (beyond / approach).min(length)),
+            false => (0.0, 0.0),
+        };
+        let force = compression / step.slope;
+        let is_within = beyond <= reach + ROUNDING * label && beyond.is_finite();
         (is_within && force.is_finite()).then_some(Front { element, force, separation: 0.0 })
     }
 
@@ -456,7 +469,11 @@ impl<'a> ViscoelasticBed<'a> {
         let (sum, effective_load, kept, closed) = sums;
         let separation = front.separation;
         let is_apart = separation > 0.0;
-        let knot = self.elements.get(front.element).map_or(0, |element| element.knot);
+        let knot = match self.elements.get(front.element) {
+            // The last nodes touch at the end of the path, where nothing need follow on which the front could begin.
+            Some(_) if self.is_at_end(step, control, &front) => self.bed.loads().len() - 1,
+            element => element.map_or(0, |element| element.knot),
+        };
         let (contact_nodes, contact_area, contact_area_fraction) =
             if is_apart { (0, 0.0, 0.0) } else { area_from(self.bed, knot) };
         let unloaded = self.bed.mean_gaps().first().copied().unwrap_or(0.0);
@@ -476,6 +493,25 @@ impl<'a> ViscoelasticBed<'a> {
             contact_area_fraction,
             mean_gap: unloaded - closed + separation,
         };
+    }
+
+    /// Whether all elements that have a length are compressed in full, but for rounding of what is prescribed.
+    fn is_at_end(&self, step: &Step, control: Control, front: &Front) -> bool {
+        let (prescribed, of_approach) = match control {
+            Control::Load(load) => (load, false),
+            Control::Approach(approach) => (approach.abs(), true),
+        };
+        let mut missing = 0.0;
+        for k in front.element..self.bounded() {
+            let carried = if k == front.element { front.force } else { 0.0 };
+            let force = self.full(step, k) - carried;
+            let compression = self.elements[k].approach * step.slope;
+            missing += if of_approach { compression * force } else { force };
+            if missing > ROUNDING * prescribed {
+                return false;
+            }
+        }
+        prescribed > 0.0
     }
 
     fn memory(&self) -> Memory {

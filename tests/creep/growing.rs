@@ -15,14 +15,14 @@ use proptest::prelude::*;
 
 use crate::stepping::{Stepping, To, rough};
 
-struct Case {
+pub(crate) struct Case {
     heights: HeightMap,
     kernel: Box<dyn InfluenceKernel>,
     path: LoadingSolver,
-    history: History,
+    pub(crate) history: History,
 }
 
-fn case(kernel: Box<dyn InfluenceKernel>, seed: u64) -> Case {
+pub(crate) fn case(kernel: Box<dyn InfluenceKernel>, seed: u64) -> Case {
     let heights = rough(&kernel.grid(), seed);
     let mut path = LoadingSolver::builder(&heights, &*kernel).build().unwrap();
     let history = path.by_ref().collect::<Result<_, _>>().unwrap();
@@ -33,7 +33,7 @@ fn free() -> Case {
     case(Box::new(Boussinesq::new(Grid::square(16, 1.0).unwrap(), 1.0).unwrap()), 5)
 }
 
-fn solid() -> Prony {
+pub(crate) fn solid() -> Prony {
     Prony::shares(&[(0.1, 0.5), (1.0, 0.3)]).unwrap()
 }
 

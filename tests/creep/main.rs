@@ -5,6 +5,7 @@
 mod any_history;
 mod cost;
 mod cycles;
+mod ends;
 mod growing;
 mod hostile;
 mod prony;
