@@ -9,13 +9,22 @@ use crate::krylov::{add_scaled, sum};
 #[derive(Debug, Clone, Default)]
 pub(super) struct Continuation {
     pub(super) tangent: Tangent,
-    /// With tangents the one before, per unit of the sum of pressures; else the state before.
     earlier: Option<Earlier>,
 }
 
-/// Fields at an earlier state.
+/// What is left of the state before the last one. Tangents may become known from one to the next, and unknown: a metal
+/// that yields has plateaus without any.
 #[derive(Debug, Clone)]
-struct Earlier {
+enum Earlier {
+    /// Itself, where its tangent was not known.
+    State(Fields),
+    /// Its tangent, per unit of the sum of pressures.
+    Tangent(Fields),
+}
+
+/// Fields of an earlier state.
+#[derive(Debug, Clone)]
+struct Fields {
     /// Sum of pressures there.
     sum: f64,
     pressure: Vec<f64>,
@@ -61,18 +70,18 @@ impl Continuation {
         let change = target - now;
         if !self.tangent.is_known() {
             let (before, pressure, total_gap, approach) = match self.earlier.take() {
-                Some(earlier) if is_close(change, now - earlier.sum) => {
+                Some(Earlier::State(earlier)) if is_close(change, now - earlier.sum) => {
                     (earlier.sum, earlier.pressure, earlier.displacement, earlier.approach)
                 }
                 _ => (0.0, vec![0.0; level.gap.len()], level.gap.clone(), 0.0),
             };
             let factor = change / (now - before);
-            self.earlier = Some(Earlier {
+            self.earlier = Some(Earlier::State(Fields {
                 sum: now,
                 pressure: iterate.pressure.clone(),
                 displacement: iterate.total_gap.clone(),
                 approach: iterate.approach,
-            });
+            }));
             for (now, before) in
                 [(&mut iterate.pressure, &pressure), (&mut iterate.total_gap, &total_gap)]
             {
@@ -87,14 +96,14 @@ impl Continuation {
             let values = field.iter();
             values.map(|value| value / total - gauge).collect()
         };
-        let tangent = Earlier {
+        let tangent = Fields {
             sum: now,
             pressure: unit(&self.tangent.rate, 0.0),
             displacement: unit(&self.tangent.displacement, uniform),
             approach: total.recip() - uniform,
         };
         let mut second = 0.0;
-        if let Some(earlier) = &self.earlier
+        if let Some(Earlier::Tangent(earlier)) = &self.earlier
             && is_close(change, now - earlier.sum)
         {
             second = 0.5 * change * change / (now - earlier.sum);
@@ -106,7 +115,7 @@ impl Continuation {
         add_scaled(&mut iterate.pressure, first, &tangent.pressure);
         add_scaled(&mut iterate.total_gap, first, &tangent.displacement);
         iterate.approach += first * tangent.approach;
-        self.earlier = Some(tangent);
+        self.earlier = Some(Earlier::Tangent(tangent));
     }
 }
 
@@ -301,6 +310,40 @@ mod tests {
                         states.total_gap(node, from) + change * states.total_gap_rate(node, from);
                     assert!((level.iterate.pressure[node] - pressure).abs() < ROUNDING);
                     assert!((level.iterate.total_gap[node] - total_gap).abs() < ROUNDING);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A state is no tangent, and a tangent no state: where tangents become known or unknown a prediction is that of a
+    /// continuation that has seen nothing before, and the next one rests on two of a kind again.
+    #[test]
+    fn states_and_tangents_are_not_mixed() -> Result<(), Error> {
+        let states = States { curvature: 0.02 };
+        for mut level in levels()? {
+            for is_known in [false, true] {
+                let mut continuation = Continuation::default();
+                let tangent = |level: &Level, sum: f64, is_known: bool| match is_known {
+                    true => states.tangent(level, sum),
+                    false => Tangent::default(),
+                };
+                for (from, to, is_known, is_new) in [
+                    (1.0, 1.1, is_known, true),
+                    (1.1, 1.25, !is_known, true),
+                    (1.25, 1.4, !is_known, false),
+                    (1.4, 1.5, is_known, true),
+                ] {
+                    states.put(&mut level, from);
+                    continuation.tangent = tangent(&level, from, is_known);
+                    let mut other = level.clone();
+                    continuation.predict(&mut level, to);
+                    Continuation::new(tangent(&other, from, is_known)).predict(&mut other, to);
+                    let [found, fresh] = [&level, &other].map(|level| &level.iterate);
+                    let is_same = found.pressure == fresh.pressure
+                        && found.total_gap == fresh.total_gap
+                        && found.approach == fresh.approach;
+                    assert_eq!(is_same, is_new, "{from} to {to}");
                 }
             }
         }
