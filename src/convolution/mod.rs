@@ -57,6 +57,7 @@ use crate::kernel::KernelTable;
 use crate::{Boundary, Error, Grid, InfluenceKernel};
 use engine::Engine;
 pub(crate) use engine::Table;
+pub(crate) use size::fast_size;
 pub(crate) use transforms::Parity;
 
 /// Displacement from pressure on a whole grid, by fast Fourier transform.

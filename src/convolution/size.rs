@@ -5,7 +5,7 @@ use super::tuning::{FACTORS, PER_POINT};
 /// The cheapest transform length that is at least `minimum`.
 ///
 /// Lengths with a prime factor above 11 are never chosen.
-pub(super) fn fast_size(minimum: usize) -> usize {
+pub(crate) fn fast_size(minimum: usize) -> usize {
     let minimum = minimum.max(1);
     let power_of_two = minimum.next_power_of_two();
     (minimum..=power_of_two)

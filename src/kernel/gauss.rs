@@ -1,6 +1,6 @@
 //! Gauss-Legendre rules on [−1, 1]: the positive nodes with their weights, rounded from 50 digits.
 
-pub(super) const FOUR: [(f64, f64); 2] =
+pub(crate) const FOUR: [(f64, f64); 2] =
     [(0.3399810435848563, 0.6521451548625461), (0.8611363115940526, 0.34785484513745385)];
 
 pub(super) const SIX: [(f64, f64); 3] = [

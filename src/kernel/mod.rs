@@ -29,6 +29,7 @@ pub use boundary::Boundary;
 pub use boussinesq::Boussinesq;
 pub use check::{KernelReport, check};
 pub(crate) use gauge::Gauge;
+pub(crate) use gauss::FOUR;
 pub use growth::ContactGrowth;
 pub use influence::InfluenceKernel;
 pub(crate) use layered::Below;

@@ -6,7 +6,9 @@ use super::kernel::{Domain, StressKernel};
 use super::load::{COMPONENTS, Load, Response};
 use super::tensor::StressField;
 use super::waves::Between;
-use crate::kernel::{Below, KernelOrigin, LayeredBody, Theory};
+use crate::kernel::{
+    Below, KernelOrigin, LayeredBody, PeriodicBoussinesq, Theory, check_periodic_cells,
+};
 use crate::record::LoadingRecord;
 use crate::{Boundary, Error, Grid, InfluenceKernel, StressError};
 
@@ -39,12 +41,16 @@ pub struct Subsurface {
     friction: (f64, f64),
 }
 
+/// Greatest depth in long sides of a cell: measures take third powers of stresses, which fall with the square of it.
+const DEEPEST: f64 = 1e30;
+
 impl Subsurface {
     /// The half-space of Poisson's ratio ν, `poissons_ratio`, with uniform pressure on each cell of `grid`.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] unless −1 < ν ≤ ½.
+    /// [`Error::OutOfRange`] unless −1 < ν ≤ ½, and for cells that repeat and are more than
+    /// [`MAX_ASPECT`](PeriodicBoussinesq::MAX_ASPECT) times as long as wide.
     pub fn new(grid: Grid, boundary: Boundary, poissons_ratio: f64) -> Result<Self, Error> {
         Self::with(Domain { grid, boundary, between: Between::Cells }, poissons_ratio)
     }
@@ -96,6 +102,9 @@ impl Subsurface {
     }
 
     fn with(domain: Domain, poissons_ratio: f64) -> Result<Self, Error> {
+        if domain.boundary != Boundary::Free && domain.between == Between::Cells {
+            check_periodic_cells(&domain.grid, PeriodicBoussinesq::MAX_ASPECT, "at most 1000")?;
+        }
         let is_one = poissons_ratio > -1.0 && poissons_ratio <= 0.5;
         let expected = "above -1 and at most 1/2";
         let poisson = Error::require("Poisson's ratio", poissons_ratio, is_one, expected)?;
@@ -159,9 +168,9 @@ impl Subsurface {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a depth that is negative or not finite, and for layers or depths below them that are
-    /// thinner than a fifth of a cell where the grid repeats; [`StressError::InRigidBase`]; [`Error::GridMismatch`] and
-    /// [`Error::FieldNotFinite`] for the pressure.
+    /// [`Error::OutOfRange`] for a depth that is negative or more than 10³⁰ long sides of a cell, and for layers or
+    /// depths below them that are thinner than a fifth of a cell where the grid repeats;
+    /// [`StressError::InRigidBase`]; [`Error::GridMismatch`] and [`Error::FieldNotFinite`] for the pressure.
     pub fn at_depth(&self, pressure: &DMatrix<f64>, depth: f64) -> Result<StressField, Error> {
         let (along_x, along_y) = self.friction;
         let no = DMatrix::zeros(0, 0);
@@ -209,6 +218,9 @@ impl Subsurface {
         let grid = &self.domain.grid;
         let is_one = depth >= 0.0 && depth.is_finite();
         Error::require("depth", depth, is_one, "finite and not negative")?;
+        let deep = depth / grid.dx().max(grid.dy());
+        let quantity = "depth over the long side of a cell";
+        Error::require(quantity, deep, deep <= DEEPEST, "at most 1e30")?;
         grid.check_finite("pressure", pressure)?;
         let (nx, ny) = grid.shape();
         let mut sums: [DMatrix<f64>; COMPONENTS] = std::array::from_fn(|_| DMatrix::zeros(nx, ny));

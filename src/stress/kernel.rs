@@ -2,7 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::cells::{Stresses, rectangles, strips};
+use super::across::add_waves_along_x;
+use super::cells::{ROWS, Stresses, rectangles, strips};
 use super::depth::Depth;
 use super::load::{COMPONENTS, Load, Response, transposed};
 use super::waves::{Between, Spectrum};
@@ -12,10 +13,6 @@ use crate::{Boundary, Error, Grid};
 
 /// Coefficients by offset.
 type Offsets<'a> = &'a (dyn Fn(isize, isize) -> f64 + Sync);
-
-/// A kernel that repeats along x is made from one that repeats along y too. Between the grid and its image there are so
-/// many periods along x: waves that vary along x fade as exp(−2π|y|/L).
-const APART: f64 = 5.0;
 
 /// Where a layer, or a depth below it, is thinner than this, in long sides of a cell, too many waves look alike on a
 /// grid that repeats.
@@ -91,11 +88,11 @@ impl StressKernel {
         let domain = Domain { grid: Grid::new(nx, ny, sides.0, sides.1)?, ..domain };
         let (grid, z) = (&domain.grid, z / unit);
         let table = match domain.boundary {
-            Boundary::Free => Table::Free(rectangles(grid.shape(), sides, &[(1.0, z)], &response)),
+            Boundary::Free => Table::Free(rectangles((nx, 0..ny), sides, &[(1.0, z)], &response)),
             Boundary::Periodic => periodic(&domain, &response, z),
-            Boundary::PeriodicX => Table::AlongX(along_x(grid, &response, z)?),
+            Boundary::PeriodicX => Table::AlongX(along_x(grid, &response, z)),
             Boundary::PeriodicY => {
-                Table::AlongY(along_x(&grid.transposed(), &response.transposed(), z)?)
+                Table::AlongY(along_x(&grid.transposed(), &response.transposed(), z))
             }
         };
         Ok(Self { domain, response, table })
@@ -177,45 +174,51 @@ const DEEP: f64 = 1.0;
 /// extrapolated from greater depths, and the difference from these on cells near the load.
 fn periodic(domain: &Domain, response: &Response, z: f64) -> Table {
     let Domain { grid, between, .. } = domain;
-    let (depth, near) = split(grid, *between, response, z);
+    let (depth, near) = split(*between, z);
     let waves = Spectrum::new(grid, *between, &depth, response);
-    let cells = near.map(|near| near.folded(grid.shape(), [true, true], response));
+    let cells = near.map(|near| near.folded(grid, [true, true], response));
     Table::Periodic { cells, waves }
 }
 
 /// The depth of the waves, and the difference on cells if they are extrapolated.
-fn split(grid: &Grid, between: Between, response: &Response, z: f64) -> (Depth, Option<Near>) {
+fn split(between: Between, z: f64) -> (Depth, Option<Near>) {
     if between == Between::Waves || z >= DEEP {
         return (Depth::At(z), None);
     }
     let depth = Depth::extrapolated(z);
-    (depth, Some(Near::new(grid, &depth, response, z)))
+    (depth, Some(Near::new(&depth, z)))
 }
 
 /// The difference between the response at a depth and the extrapolated one, which is nothing far from the load.
 struct Near {
-    shape: (usize, usize),
-    values: Vec<Stresses>,
+    /// Weights and depths.
+    parts: Vec<(f64, f64)>,
 }
 
+/// Cells whose differences are held at a time: of flat ones there are millions within reach.
+const HELD: usize = 1 << 16;
+
 impl Near {
-    fn new(grid: &Grid, depth: &Depth, response: &Response, z: f64) -> Self {
-        let (dx, dy) = (grid.dx(), grid.dy());
-        let shape = ((Depth::REACH / dx) as usize + 1, (Depth::REACH / dy) as usize + 1);
-        let mut depths = vec![(1.0, z)];
-        depths.extend(depth.parts().into_iter().map(|(weight, z)| (-weight, z)));
-        let values = rectangles(shape, (dx, dy), &depths, response);
-        Self { shape, values }
+    fn new(depth: &Depth, z: f64) -> Self {
+        let mut parts = vec![(1.0, z)];
+        parts.extend(depth.parts().into_iter().map(|(weight, z)| (-weight, z)));
+        Self { parts }
     }
 
     /// With all images along the sides that repeat: at all offsets there, and at those that are not negative elsewhere.
     fn folded(
         &self,
-        (nx, ny): (usize, usize),
+        grid: &Grid,
         [x_repeats, y_repeats]: [bool; 2],
         response: &Response,
     ) -> Vec<Stresses> {
-        let (columns, rows) = self.shape;
+        let (nx, ny) = grid.shape();
+        let within = |side: f64, n: usize, repeats: bool| {
+            let reached = (Depth::REACH / side) as usize + 1;
+            if repeats { reached } else { reached.min(n) }
+        };
+        let columns = within(grid.dx(), nx, x_repeats);
+        let rows = within(grid.dy(), ny, y_repeats);
         let mut sums = vec![[0.0; COMPONENTS]; nx * ny];
         let signs: [(f64, f64); COMPONENTS] = std::array::from_fn(|c| response.signs(c));
         let place = |offset: usize, is_negative: bool, n: usize, repeats: bool| match (
@@ -227,20 +230,26 @@ impl Near {
             (false, false) => Some(offset).filter(|offset| *offset < n),
             (false, true) => None,
         };
-        for (b, row) in self.values.chunks_exact(columns).enumerate().take(rows) {
-            for below in [false, true] {
-                let Some(j) = place(b, below, ny, y_repeats).filter(|_| b > 0 || !below) else {
-                    continue;
-                };
-                for (a, value) in row.iter().enumerate() {
-                    for left in [false, true] {
-                        let i = place(a, left, nx, x_repeats).filter(|_| a > 0 || !left);
-                        let Some(i) = i else { continue };
-                        let sum = &mut sums[i + nx * j];
-                        for ((sum, value), (x, y)) in sum.iter_mut().zip(value).zip(signs) {
-                            let x = if left { x } else { 1.0 };
-                            let y = if below { y } else { 1.0 };
-                            *sum += x * y * value;
+        let at_once = HELD.div_ceil(columns).next_multiple_of(ROWS);
+        for first in (0..rows).step_by(at_once) {
+            let rows = first..rows.min(first + at_once);
+            let sides = (grid.dx(), grid.dy());
+            let values = rectangles((columns, rows.clone()), sides, &self.parts, response);
+            for (b, row) in rows.zip(values.chunks_exact(columns)) {
+                for below in [false, true] {
+                    let Some(j) = place(b, below, ny, y_repeats).filter(|_| b > 0 || !below) else {
+                        continue;
+                    };
+                    for (a, value) in row.iter().enumerate() {
+                        for left in [false, true] {
+                            let i = place(a, left, nx, x_repeats).filter(|_| a > 0 || !left);
+                            let Some(i) = i else { continue };
+                            let sum = &mut sums[i + nx * j];
+                            for ((sum, value), (x, y)) in sum.iter_mut().zip(value).zip(signs) {
+                                let x = if left { x } else { 1.0 };
+                                let y = if below { y } else { 1.0 };
+                                *sum += x * y * value;
+                            }
                         }
                     }
                 }
@@ -250,35 +259,19 @@ impl Near {
     }
 }
 
-/// Of a grid that repeats along x alone, at offsets of a period along x and at those that are not negative across.
-///
-/// What varies along x fades across it, so that it is the same on a grid that also repeats across at a great distance.
-/// The mean along x is the response to strips.
-fn along_x(grid: &Grid, response: &Response, z: f64) -> Result<Vec<Stresses>, Error> {
+/// Of a grid that repeats along x alone, at offsets of a period along x and at those that are not negative across. The
+/// mean along x is the response to strips.
+fn along_x(grid: &Grid, response: &Response, z: f64) -> Vec<Stresses> {
     let (nx, ny) = grid.shape();
-    let (dx, dy) = (grid.dx(), grid.dy());
-    let apart = (APART * grid.sides().0 / dy).ceil() as usize;
-    let wide = Grid::new(nx, ny.saturating_add(apart), dx, dy)?;
-    let (depth, near) = split(grid, Between::Cells, response, z);
-    let waves = Spectrum::new(&wide, Between::Cells, &depth, response).without_mean_along_x();
+    let (depth, near) = split(Between::Cells, z);
     let mut values = match near {
-        Some(near) => near.folded((nx, ny), [true, false], response),
+        Some(near) => near.folded(grid, [true, false], response),
         None => vec![[0.0; COMPONENTS]; nx * ny],
     };
-    let uniform = strips(ny, dy, &depth.parts(), response);
+    let uniform = strips(ny, grid.dy(), &depth.parts(), response);
     for (row, uniform) in values.chunks_exact_mut(nx).zip(&uniform) {
         row.iter_mut().for_each(|value| super::cells::add(value, 1.0 / nx as f64, uniform));
     }
-    // A load on one cell has all waves alike.
-    let mut one = vec![0.0; wide.nodes()];
-    one[0] = 1.0;
-    let mut found = vec![0.0; wide.nodes()];
-    let mut convolution = Convolution::blank((wide, Boundary::Periodic));
-    for component in 0..COMPONENTS {
-        let of_wave = |kx: usize, ky: usize| waves.at((kx, ky), component, response);
-        convolution.set(response.parity(component), None, Some(&of_wave))?;
-        convolution.apply(&one, &mut found)?;
-        values.iter_mut().zip(&found).for_each(|(value, found)| value[component] += found);
-    }
-    Ok(values)
+    add_waves_along_x(&mut values, grid, &depth, response);
+    values
 }

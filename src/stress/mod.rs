@@ -43,6 +43,7 @@
 //! Mechanics*, §3.2 and §3.6, for point forces; S. Liu & Q. Wang, J. Tribol. 124 (2002) 36, for stresses by fast
 //! Fourier transform.
 
+mod across;
 mod body;
 mod cells;
 mod depth;

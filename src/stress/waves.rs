@@ -77,26 +77,100 @@ fn alike(k: usize, (n, side): (usize, f64), between: Between, most: f64) -> Vec<
     }
 }
 
+/// The greatest wave number at a depth: infinite on the surface, where all waves count. With loads on cells no spectrum
+/// is asked for there.
+fn most(depth: &Depth) -> f64 {
+    FADED / depth.least()
+}
+
+/// Adds those of a half-space.
+#[inline(always)]
+fn add_waves(depth: &Depth, sums: &mut WaveSums, x: Wave, y: &Neighbours) {
+    vectorized(
+        #[inline(always)]
+        || {
+            let Waves { qx, qy, q, weight } = Waves::new(x, y);
+            let (plain, deep) = depth.of_waves(&q);
+            let per_q = each(|k| 1.0 / q[k]);
+            sums.add(
+                (&each(|k| qx * per_q[k]), &each(|k| qy[k] * per_q[k])),
+                (&each(|k| weight[k] * plain[k]), &each(|k| weight[k] * deep[k])),
+            );
+        },
+    );
+}
+
+/// Responses of a half-space to a load on cells, at the waves (kx, ky) of nx × ny cells: at 0 ≤ ky ≤ ny/2, or as many
+/// of them as have not faded.
+pub(super) fn along_a_line(
+    kx: usize,
+    (nx, ny): (usize, usize),
+    (dx, dy): (f64, f64),
+    depth: &Depth,
+    response: &Response,
+) -> Vec<Stresses> {
+    let most = most(depth);
+    let along_x = alike(kx, (nx, dx), Between::Cells, most);
+    // The least wave number of those that look like (kx, ky) is its own.
+    if TAU * kx as f64 >= most * nx as f64 * dx {
+        return Vec::new();
+    }
+    let reached = (most * ny as f64 * dy / TAU) as usize + 1;
+    let count = reached.next_multiple_of(LANES).min(ny / 2 + 1);
+    let mut line = vec![[0.0; COMPONENTS]; count];
+    let add = |sums: &mut WaveSums, x: Wave, y: &Neighbours| add_waves(depth, sums, x, y);
+    for (place, values) in line.chunks_mut(LANES).enumerate() {
+        let along_y = neighbours(place * LANES, (ny, dy), Between::Cells, most);
+        let sum = sum(&along_x, &along_y, most, &add);
+        for (lane, value) in values.iter_mut().enumerate() {
+            *value = response.of(&sum.values(lane));
+        }
+    }
+    line
+}
+
+/// What looks like each of the waves from `first` on along a side with n nodes, side by side.
+fn neighbours(
+    first: usize,
+    (n, side): (usize, f64),
+    between: Between,
+    most: f64,
+) -> Vec<Neighbours> {
+    // Lanes behind the last wave repeat it, and nothing reads them.
+    let waves = |lane: usize| alike((first + lane).min(n / 2), (n, side), between, most);
+    let lanes: [Vec<Wave>; LANES] = std::array::from_fn(waves);
+    let of = |m: usize| {
+        let q = each(|k| lanes[k][m].0);
+        let least = q.iter().map(|q| q * q).fold(f64::INFINITY, f64::min);
+        Neighbours { q, weight: each(|k| lanes[k][m].1), least }
+    };
+    (0..lanes[0].len()).map(of).collect()
+}
+
+/// The sum over all pairs up to the wave number `most`, and some beyond it.
+#[inline(always)]
+fn sum<S: Default>(
+    along_x: &[Wave],
+    along_y: &[Neighbours],
+    most: f64,
+    add: &impl Fn(&mut S, Wave, &Neighbours),
+) -> S {
+    let mut sum = S::default();
+    for y in along_y {
+        for &(qx, weight) in along_x {
+            if qx * qx + y.least < most * most {
+                add(&mut sum, (qx, weight), y);
+            }
+        }
+    }
+    sum
+}
+
 impl Spectrum {
     pub(super) fn new(grid: &Grid, between: Between, depth: &Depth, response: &Response) -> Self {
-        // Infinite on the surface, where all waves count: with loads on cells no spectrum is asked for there.
-        let most = FADED / depth.least();
-        let add = |sums: &mut WaveSums, x: Wave, y: &Neighbours| {
-            vectorized(
-                #[inline(always)]
-                || {
-                    let Waves { qx, qy, q, weight } = Waves::new(x, y);
-                    let (plain, deep) = depth.of_waves(&q);
-                    let per_q = each(|k| 1.0 / q[k]);
-                    sums.add(
-                        (&each(|k| qx * per_q[k]), &each(|k| qy[k] * per_q[k])),
-                        (&each(|k| weight[k] * plain[k]), &each(|k| weight[k] * deep[k])),
-                    );
-                },
-            );
-        };
+        let add = |sums: &mut WaveSums, x: Wave, y: &Neighbours| add_waves(depth, sums, x, y);
         let of = |sums: &WaveSums, lane: usize| response.of(&sums.values(lane));
-        Self::summed((grid, between), most, (response, response.uniform()), add, of)
+        Self::summed((grid, between), most(depth), (response, response.uniform()), add, of)
     }
 
     /// Of layers.
@@ -139,19 +213,11 @@ impl Spectrum {
         let shape = grid.shape();
         let (nx, ny) = shape;
         let height = ny / 2 + 1;
-        let neighbours = |first: usize| -> Vec<Neighbours> {
-            // Lanes behind the last wave repeat it, and nothing reads them.
-            let waves =
-                |lane: usize| alike((first + lane).min(height - 1), (ny, grid.dy()), between, most);
-            let lanes: [Vec<Wave>; LANES] = std::array::from_fn(waves);
-            let of = |m: usize| {
-                let q = each(|k| lanes[k][m].0);
-                let least = q.iter().map(|q| q * q).fold(f64::INFINITY, f64::min);
-                Neighbours { q, weight: each(|k| lanes[k][m].1), least }
-            };
-            (0..lanes[0].len()).map(of).collect()
-        };
-        let along_y: Vec<Vec<Neighbours>> = (0..height).step_by(LANES).map(neighbours).collect();
+        let along_y: Vec<Vec<Neighbours>> = (0..height)
+            .step_by(LANES)
+            .map(|first| neighbours(first, (ny, grid.dy()), between, most))
+            .collect();
+        let within = if between == Between::Waves { f64::INFINITY } else { most };
         let is_symmetric = nx == ny && grid.dx() == grid.dy() && response.is_symmetric();
         let mut values = vec![[0.0; COMPONENTS]; (nx / 2 + 1) * height];
         for_each_chunk(&mut values, height, |kx, column| {
@@ -160,14 +226,7 @@ impl Spectrum {
             along_x.retain(|(_, weight)| *weight != 0.0);
             let skipped = if is_symmetric { kx / LANES } else { 0 };
             for (values, along_y) in column.chunks_mut(LANES).zip(&along_y).skip(skipped) {
-                let mut sum = S::default();
-                for y in along_y {
-                    for &(qx, weight) in &along_x {
-                        if between == Between::Waves || qx * qx + y.least < most * most {
-                            add(&mut sum, (qx, weight), y);
-                        }
-                    }
-                }
+                let sum = sum(&along_x, along_y, within, &add);
                 for (lane, value) in values.iter_mut().enumerate() {
                     *value = of(&sum, lane);
                 }
@@ -202,12 +261,6 @@ impl Spectrum {
                 self.values.chunks_mut(height).for_each(|column| column[height - 1][c] = 0.0);
             }
         }
-    }
-
-    /// Takes out the waves that do not vary along x.
-    pub(super) fn without_mean_along_x(mut self) -> Self {
-        self.values[..self.shape.1 / 2 + 1].fill([0.0; COMPONENTS]);
-        self
     }
 
     /// The response of a component to the wave (kx, ky) with kx ≤ nx/2 and ky < ny.

@@ -163,6 +163,35 @@ fn the_mean_displacement_is_that_of_the_layers() {
     }
 }
 
+/// A ratio that is ½ but for rounding has a mean compliance that rounding would hide, and the path of ½.
+#[test]
+fn a_layer_may_be_incompressible_to_rounding() {
+    let (surface, _) = rough(16);
+    let grid = Grid::square(16, 1e-3).unwrap();
+    for thickness in [20e-6, 200e-6] {
+        for made in [Layered::periodic, Layered::spectral] {
+            let paths = [0.5, 0.499_999_999_999_999_9].map(|poisson| {
+                let layer = Layer { young: 3e6, poisson, thickness };
+                let body = LayeredBody::new(&[layer], Base::Rigid).unwrap();
+                assert_eq!(body.mean_compliance().unwrap() > 0.0, poisson < 0.5);
+                let kernel = made(grid, body).unwrap();
+                assert_eq!(kernel.mean_displacement(), MeanDisplacement::Arbitrary);
+                followed(&kernel, &surface, 0.9).1
+            });
+            assert_eq!(paths[0].len(), paths[1].len());
+            for (one, other) in paths[0].iter().zip(&paths[1]) {
+                assert_eq!(one.event, other.event);
+                let (one, other) = (one.contact, other.contact);
+                // Some 200 nodes with a condition number of 1e4.
+                let is_close = |a: f64, b: f64| (a - b).abs() <= 1e-10 * a.abs();
+                assert!(is_close(one.load, other.load), "{} {}", one.load, other.load);
+                assert!(is_close(one.approach, other.approach));
+                assert!(is_close(one.mean_gap, other.mean_gap));
+            }
+        }
+    }
+}
+
 /// A record names the layers, and goes on in another process, releases included.
 #[cfg(feature = "io")]
 #[test]

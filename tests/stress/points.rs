@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use asperity::stress::Subsurface;
+use asperity::stress::{Measure, Stress, Subsurface};
 use asperity::{Boundary, Error, Grid};
 use nalgebra::DMatrix;
 
@@ -140,5 +140,96 @@ fn the_surface_itself() -> Result<(), Error> {
         }
     }
     assert!((found.xx[(10, 10)] + (1.0 + 2.0 * nu)).abs() < 1e-13);
+    Ok(())
+}
+
+/// The point force once more, without differences of what is alike below it.
+fn far_below(x: f64, y: f64, z: f64, nu: f64) -> Tensor {
+    let rho = (x * x + y * y + z * z).sqrt();
+    let (b, k) = (rho + z, 1.0 - 2.0 * nu);
+    let (rho3, rho5) = (rho.powi(3), rho.powi(5));
+    let turned = (2.0 * rho + z) / (rho3 * b * b);
+    let side = |x: f64| k * (z / rho3 - 1.0 / (rho * b) + x * x * turned) - 3.0 * x * x * z / rho5;
+    let xy = k * x * y * turned - 3.0 * x * y * z / rho5;
+    let down = [-3.0 * z.powi(3), -3.0 * y * z * z, -3.0 * x * z * z].map(|s| s / rho5);
+    [side(x), side(y), down[0], down[1], down[2], xy].map(|s| s / TAU)
+}
+
+/// A square of 3 x 3 cells, whose width of 10⁻⁶ of the depth matters by its square.
+#[test]
+fn cells_far_above_are_point_forces() -> Result<(), Error> {
+    let nu = 0.3;
+    let body = Subsurface::new(Grid::square(7, 7.0)?, Boundary::Free, nu)?;
+    let inside = |i: usize| (2..5).contains(&i);
+    let pressure =
+        DMatrix::from_fn(7, 7, |ix, iy| if inside(ix) && inside(iy) { 1.0 } else { 0.0 });
+    for z in [1e6, 1e7, 1e8, 1e20, 1e30] {
+        let found = body.at_depth(&pressure, z)?;
+        for iy in 0..7 {
+            for ix in 0..7 {
+                let place = [ix, iy].map(|i: usize| i as f64 - 3.0);
+                let expected = far_below(place[0], place[1], z, nu).map(|s| 9.0 * s);
+                let unit = expected[2].abs();
+                for (field, expected) in found.components().into_iter().zip(expected) {
+                    let error = (field[(ix, iy)] - expected) / unit;
+                    assert!(error.abs() < 1e-10, "{z:e} ({ix}, {iy}): {error:e}");
+                }
+                let expected = Stress::new(expected);
+                for measure in Measure::ALL {
+                    let ratio = found.map(measure)[(ix, iy)] / expected.measure(measure);
+                    assert!((ratio - 1.0).abs() < 1e-10, "{z:e} {measure:?} ({ix}, {iy}): {ratio}");
+                }
+            }
+        }
+        assert!(body.survey(&pressure, Some(&[z])).is_ok());
+    }
+    for z in [1.1e30, 1e150, f64::MAX] {
+        assert!(matches!(body.at_depth(&pressure, z), Err(Error::OutOfRange { .. })), "{z:e}");
+    }
+    Ok(())
+}
+
+/// One side repeats: far below it is a line load.
+#[test]
+fn strips_far_above_are_lines() -> Result<(), Error> {
+    let body = Subsurface::new(Grid::square(4, 4.0)?, Boundary::PeriodicX, 0.3)?;
+    for z in [1e4, 1e7, 1e10] {
+        let found = body.at_depth(&DMatrix::from_element(4, 4, 1.0), z)?;
+        let expected = -4.0 * 4.0 / (TAU * z);
+        // The width of 4 matters by its square.
+        let allowed = 1e-13 + 16.0 / (z * z);
+        assert!(found.zz.iter().all(|zz| (zz / expected - 1.0).abs() < allowed), "{z:e}");
+        assert!(found.xx.iter().all(|xx| (xx / expected - 0.3).abs() < allowed), "{z:e}");
+        assert!(found.yy.iter().all(|yy| (yy / expected).abs() < allowed), "{z:e}");
+        // Along the line the shear is y/z of the pressure.
+        let slope = (found.yz[(0, 3)] - found.yz[(0, 2)]) * z / expected;
+        assert!((slope - 1.0).abs() < 1e-3, "{z:e} {slope}");
+    }
+    Ok(())
+}
+
+/// Where point forces take over from differences between corners.
+#[test]
+fn stresses_go_on_where_points_take_over() -> Result<(), Error> {
+    for ((dx, dy), boundary) in [
+        ((1.0, 1.0), Boundary::Free),
+        ((0.3, 1.0), Boundary::Free),
+        ((1.0, 0.2), Boundary::Free),
+        ((1.0, 1.0), Boundary::PeriodicX),
+        ((1.0, 0.2), Boundary::PeriodicY),
+    ] {
+        let body = Subsurface::new(Grid::new(6, 5, dx, dy)?, boundary, 0.2)?;
+        let load = DMatrix::from_fn(6, 5, |ix, iy| 1.0 + (ix * iy % 3) as f64);
+        for change in [64.0 * dx, 64.0 * dy] {
+            let at = |z: f64| body.under_traction((&load, z), [&(0.4 * &load), &(0.3 * &load)]);
+            let (above, below) = (at(change * (1.0 - 1e-13))?, at(change * (1.0 + 1e-13))?);
+            let unit = above.zz.amax();
+            for (above, below) in above.components().into_iter().zip(below.components()) {
+                // Corners lose 10⁻¹² there.
+                let error = (above - below).amax() / unit;
+                assert!(error < 1e-11, "{dx} {dy} {boundary:?}: {error:e}");
+            }
+        }
+    }
     Ok(())
 }

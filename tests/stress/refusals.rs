@@ -48,3 +48,22 @@ fn what_layers_do_not_have_is_refused() -> Result<(), Error> {
     assert!(matches!(thin.at_depth(&load, 1e-7), Err(Error::OutOfRange { .. })));
     Ok(())
 }
+
+/// Flat cells that repeat have more of their kind within reach than memory holds.
+#[test]
+fn flat_cells_that_repeat_are_refused() -> Result<(), Error> {
+    for aspect in [1e6, 1e20] {
+        let boundaries = [Boundary::Periodic, Boundary::PeriodicX, Boundary::PeriodicY];
+        for (boundary, (dx, dy)) in
+            boundaries.into_iter().flat_map(|b| [(b, (1.0, aspect)), (b, (aspect, 1.0))])
+        {
+            let refused = Subsurface::new(Grid::new(4, 4, dx, dy)?, boundary, 0.3);
+            let is_typed =
+                matches!(refused, Err(Error::OutOfRange { value, .. }) if value == aspect);
+            assert!(is_typed, "{boundary:?} {aspect} {refused:?}");
+        }
+        let free = Subsurface::new(Grid::new(4, 4, 1.0, aspect)?, Boundary::Free, 0.3)?;
+        assert!(free.at_depth(&DMatrix::from_element(4, 4, 1.0), 0.5).is_ok());
+    }
+    Ok(())
+}

@@ -47,10 +47,10 @@ use crate::{Error, Grid};
 /// # Mean displacement
 ///
 /// With a rigid base it is [physical](MeanDisplacement::Physical): a uniform pressure p compresses the layers by Ĉ(0) p
-/// ([`LayeredBody::mean_compliance`]). If all are incompressible, it is zero under any load. The matrix is singular
-/// then, and is treated like that of an [arbitrary](MeanDisplacement::Arbitrary) mean; the approach of the mean planes,
-/// which is reported, is the approach of the base, and its stiffness the interfacial one. On an elastic half-space, or
-/// in contact with one, the mean is arbitrary.
+/// ([`LayeredBody::mean_compliance`]). If all are incompressible to rounding, it is zero under any load. The matrix is
+/// singular then, and is treated like that of an [arbitrary](MeanDisplacement::Arbitrary) mean; the approach of the
+/// mean planes, which is reported, is the approach of the base, and its stiffness the interfacial one. On an elastic
+/// half-space, or in contact with one, the mean is arbitrary.
 ///
 /// # Growth of contact
 ///
@@ -113,6 +113,10 @@ const INVERTED: usize = 16;
 /// ones see.
 const THICK: f64 = 1.5;
 
+/// A mean compliance is nothing below so much of the greatest value of the symbol: twice what a convolution takes for
+/// rounding, so that none is refused for its own.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
 impl Layered {
     /// With a free boundary.
     ///
@@ -159,8 +163,10 @@ impl Layered {
     }
 
     fn of_symbol(grid: Grid, body: LayeredBody, symbol: &Even, pressure: Pressure) -> Self {
+        // What rounding leaves of an incompressible layer, a sum over coefficients cannot tell from nothing.
+        let greatest = symbol.values().iter().copied().fold(0.0, f64::max);
         let mean = match body.mean_compliance() {
-            Some(compliance) if compliance > 0.0 => MeanDisplacement::Physical,
+            Some(compliance) if compliance > ROUNDING * greatest => MeanDisplacement::Physical,
             _ => MeanDisplacement::Arbitrary,
         };
         let values = symbol.inverse_transform();
