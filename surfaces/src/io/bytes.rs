@@ -174,3 +174,14 @@ pub(super) fn latin1(bytes: &[u8]) -> String {
     let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
     text.trim_matches(|c: char| c == '\0' || c.is_whitespace()).to_string()
 }
+
+/// Characters of a text that is kept once for each of many maps.
+#[cfg(feature = "io")]
+const SHARED: usize = 128;
+
+/// A text that many maps of a file may share, without what is beyond [`SHARED`]: a long one does not take its length once
+/// for each.
+#[cfg(feature = "io")]
+pub(super) fn shared(text: &str) -> String {
+    text.chars().take(SHARED).collect()
+}

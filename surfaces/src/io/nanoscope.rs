@@ -7,7 +7,7 @@
 //! section says how many nanometres a volt is, `\@Sens. Zscan: V 13.2283 nm/V`. The first row of an image is its
 //! lowest.
 
-use super::bytes::{Bytes, find, shape};
+use super::bytes::{Bytes, find, shape, shared};
 use super::fault::Fault;
 use super::number::{Number, parsed};
 use super::raw::{Channel, Parsed};
@@ -134,7 +134,7 @@ fn number_and_unit(text: &str) -> Result<(f64, Option<String>), Fault> {
 
 /// A unit, in which `~` is the sign of a millionth.
 fn named(unit: &str) -> Option<String> {
-    Some(unit.trim().replace('~', "µ")).filter(|unit| !unit.is_empty())
+    Some(shared(unit.trim()).replace('~', "µ")).filter(|unit| !unit.is_empty())
 }
 
 /// What stands in quotes, otherwise what stands in brackets.

@@ -6,7 +6,7 @@
 //! section `DataSet`; their integers follow in the same order, each image from its lowest row on. `Dim2Range` is what
 //! all integers of that length span, from `Dim2Min` on.
 
-use super::bytes::{Bytes, Order, find, shape};
+use super::bytes::{Bytes, Order, find, shape, shared};
 use super::fault::Fault;
 use super::number::Number;
 use super::raw::{Channel, Parsed};
@@ -70,7 +70,8 @@ fn image(section: &Section, bytes: &mut Bytes) -> Result<Option<Channel>, Fault>
     };
     let axis = |axis: usize, what: &str| format!("Dim{axis}{what}");
     let range = |k: usize| section.number::<f64>(&axis(k, "Range"));
-    let unit = |k: usize| section.get(&axis(k, "Unit")).filter(|unit| !unit.is_empty());
+    let text = |key: &str| section.get(key).map(|text| shared(&text));
+    let unit = |k: usize| text(&axis(k, "Unit")).filter(|unit| !unit.is_empty());
     let (lx, ly, lz) = (range(0)?, range(1)?, range(2)?);
     let least: f64 = section.number("Dim2Min")?;
     let all = 2_f64.powi(8 * number.size() as i32);
@@ -81,7 +82,7 @@ fn image(section: &Section, bytes: &mut Bytes) -> Result<Option<Channel>, Fault>
         return Ok(None);
     }
     let values = number.decode_ordered(data, order, |value| least + (value + below) / all * lz)?;
-    let (frame, name) = (section.get("Frame"), section.get(&axis(2, "Name")));
+    let (frame, name) = (text("Frame"), text(&axis(2, "Name")));
     let channel = Channel {
         name: format!("{} ({})", frame.unwrap_or_default(), name.unwrap_or_default()),
         height_unit: unit(2),

@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::bytes::{Bytes, latin1, reserved, shape, text_before_zero};
+use super::bytes::{Bytes, latin1, reserved, shape, shared, text_before_zero};
 use super::fault::Fault;
 use super::number::{Number, positive};
 use super::raw::{Channel, Parsed};
@@ -52,7 +52,8 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let wavelength = number("Wavelength")?;
     let pixel = number("Pixel_size")?;
     let aspect = number("Aspect")?.unwrap_or(1.0);
-    let title = blocks.get("Title").map(|block| Ok::<_, Fault>(latin1(block.bytes(file)?)));
+    let title =
+        blocks.get("Title").map(|block| Ok::<_, Fault>(shared(&latin1(block.bytes(file)?))));
     let title = title.transpose()?.unwrap_or_default();
     let scale = Scale { wavelength, mult: number("Mult")? };
     heights

@@ -180,3 +180,64 @@ fn consistent_lies_cost_no_memory() {
         }
     });
 }
+
+/// A text that a file has once, and that each of its maps of one node would have.
+#[test]
+fn a_long_text_is_not_taken_once_for_each_map() {
+    const MAPS: usize = 1000;
+    // A map of these files is some 30 bytes, and has a name of up to 260, which is copied to tell it from the others
+    // and once more for the message.
+    const BYTES_A_MAP: u64 = 3000;
+    let text = "x".repeat(30_000);
+    for (name, file) in [("long.opd", opd(&text, MAPS)), ("long.nid", nid(&text, MAPS))] {
+        let mut told = String::new();
+        let memory = measure(|| {
+            told = match ReadOptions::new().read_bytes(&file, name) {
+                Ok(surface) => surface.to_string(),
+                Err(error) => error.to_string(),
+            };
+        });
+        assert!(told.contains("[1000]"), "{name}: {}", &told[..200]);
+        let limit = BYTES_A_MAP * MAPS as u64 + 10 * file.len() as u64;
+        assert!(memory.bytes_max <= limit, "{name}: {} bytes", memory.bytes_max);
+    }
+}
+
+/// Maps of one node under one title.
+fn opd(title: &str, maps: usize) -> Vec<u8> {
+    let entry = |name: &str, length: usize| {
+        let mut entry = name.as_bytes().to_vec();
+        entry.resize(16, 0);
+        entry.extend(1_u16.to_le_bytes());
+        entry.extend((length as u32).to_le_bytes());
+        entry.extend(0_u16.to_le_bytes());
+        entry
+    };
+    let map = [1, 0, 1, 0, 2, 0, 7, 0];
+    let mut file = vec![1, 0];
+    file.extend(entry("Directory", 24 * (maps + 2)));
+    file.extend(entry("Title", title.len()));
+    file.extend(entry("RAW_DATA", map.len()).repeat(maps));
+    file.extend(title.as_bytes());
+    file.extend(map.repeat(maps));
+    file
+}
+
+/// Maps of one node that one section describes.
+fn nid(frame: &str, maps: usize) -> Vec<u8> {
+    let groups = maps.div_ceil(64);
+    let mut file = format!("[DataSet]\nGroupCount={groups}\n");
+    for group in 0..groups {
+        let count = (maps - 64 * group).min(64);
+        file += &format!("Gr{group}-Count={count}\n");
+        for channel in 0..count {
+            file += &format!("Gr{group}-Ch{channel}=A\n");
+        }
+    }
+    file += "[A]\nPoints=1\nLines=1\nSaveMode=Binary\nSaveBits=8\nSaveSign=Signed\nSaveOrder=Intel\n\
+             Dim0Range=1\nDim1Range=1\nDim2Range=1\nDim2Min=0\nDim2Name=Height\n";
+    file += &format!("Dim0Unit={frame}\nDim1Unit={frame}\nDim2Unit={frame}\nFrame={frame}\n#!");
+    let mut file = file.into_bytes();
+    file.extend(vec![1; maps]);
+    file
+}

@@ -141,14 +141,27 @@ pub(super) fn is_row(line: &[u8]) -> bool {
 /// What parts words.
 const PARTS: &[u8] = b" \t;,";
 
-/// Whether a line has empty cells and stars only, as many as the row below it: then all heights in it are missing.
-pub(super) fn is_row_without_numbers(line: &[u8], below: &[u8]) -> bool {
-    let count = |line: &[u8], sign: u8| line.iter().filter(|byte| **byte == sign).count();
-    let words =
-        |line: &[u8]| line.split(|byte| PARTS.contains(byte)).filter(|w| !w.is_empty()).count();
-    let is_same = |sign: &u8| count(line, *sign) > 0 && count(line, *sign) == count(below, *sign);
-    line.iter().all(|byte| *byte == b'*' || PARTS.contains(byte))
-        && (b";,\t".iter().any(is_same) || words(line) > 0 && words(line) == words(below))
+/// How many cells a line has, by each sign that may part them, and by blanks.
+pub(super) struct Cells {
+    signs: [usize; 3],
+    words: usize,
+}
+
+impl Cells {
+    pub(super) fn of(line: &[u8]) -> Self {
+        let count = |sign: u8| line.iter().filter(|byte| **byte == sign).count();
+        let words = line.split(|byte| PARTS.contains(byte)).filter(|word| !word.is_empty());
+        Self { signs: [count(b';'), count(b','), count(b'\t')], words: words.count() }
+    }
+
+    /// Whether a line above has empty cells and stars only, and as many: then all heights in it are missing.
+    pub(super) fn are_all_missing_in(&self, line: &[u8]) -> bool {
+        let above = Self::of(line);
+        let is_same = |(above, below): (usize, usize)| above > 0 && above == below;
+        line.iter().all(|byte| *byte == b'*' || PARTS.contains(byte))
+            && (above.signs.into_iter().zip(self.signs).any(is_same)
+                || is_same((above.words, self.words)))
+    }
 }
 
 /// Whether a line has one comma, between two digits.

@@ -2,7 +2,7 @@
 
 use crate::io::fault::Fault;
 
-use super::dialect::{Dialect, is_row, is_row_without_numbers};
+use super::dialect::{Cells, Dialect, is_row};
 use super::header::Header;
 use crate::io::lines::{Line, Lines};
 use crate::number::counted;
@@ -150,9 +150,10 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
             .next()
             .ok_or_else(|| fault!("there is no line in it that consists of numbers only"))?;
         if !line.is_comment() && is_row(line.bytes) {
+            let cells = Cells::of(line.bytes);
             let belongs = |above: &&Lines| {
                 let mut above = (*above).clone();
-                above.next().is_some_and(|above| is_row_without_numbers(above.bytes, line.bytes))
+                above.next().is_some_and(|above| cells.are_all_missing_in(above.bytes))
             };
             let count = above.iter().rev().take_while(belongs).count();
             let first = above.get(above.len() - count).unwrap_or(&ahead).clone();

@@ -43,7 +43,8 @@ pub fn count_missing(heights: &DMatrix<f64>) -> usize {
 /// # Errors
 ///
 /// [`Error::EmptyGrid`] without any node, [`Error::NothingMeasured`] if all heights are missing, and
-/// [`Error::NoConvergence`] if the iteration does not reach that error.
+/// [`Error::NoConvergence`] if the iteration does not reach that error, as rounding forbids in gaps of more than some
+/// ten thousand nodes at an end of a profile.
 ///
 /// ```
 /// use asperity_surfaces::surface::{count_missing, fill_missing};
