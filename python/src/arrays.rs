@@ -29,7 +29,7 @@ pub(crate) enum Kind {
 }
 
 impl<'py> Found<'py> {
-    /// An array of numbers, or of what NumPy makes one of. Masked values become NaN.
+    /// An array of numbers, or of what NumPy makes one of. Masked numbers become NaN; there is no truth that says as much.
     pub(crate) fn of(value: &Bound<'py, PyAny>, name: &'static str, kind: Kind) -> Fallible<Self> {
         let py = value.py();
         let numpy = py.import(intern!(py, "numpy"))?;
@@ -52,11 +52,19 @@ impl<'py> Found<'py> {
                 numbers: vec![("argument", name.into()), ("dtype", Number::Text(dtype))],
             });
         }
-        let array = if is_masked && kind == Kind::Real {
+        let array = if !is_masked {
+            array
+        } else if kind == Kind::Real {
             let filled = array.call_method1("astype", (numpy.getattr("float64")?,))?;
             filled.call_method1("filled", (f64::NAN,))?
         } else {
-            array
+            if masked.call_method1(intern!(py, "is_masked"), (&array,))?.is_truthy()? {
+                return Err(Failure::Array {
+                    message: format!("{name} has masked values: fill them with True or False"),
+                    numbers: vec![("argument", name.into())],
+                });
+            }
+            array.call_method0("filled")?
         };
         Ok(Self { array, name, shape })
     }

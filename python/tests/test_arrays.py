@@ -71,6 +71,19 @@ def test_what_is_missing() -> None:
     np.testing.assert_array_equal(asp.Surface(np.ma.array(z), (5.0, 4.0)).z, z)
 
 
+def test_masks_of_truths() -> None:
+    """A mask that hides something is refused: there is no contact that may be or not. Without one all are what they are."""
+    gap = np.arange(12.0).reshape(3, 4)
+    contact = gap < 3.0
+    found = asp.gap_distribution(gap, contact)
+    masked = np.ma.array(contact, mask=np.zeros((3, 4), dtype=bool))
+    np.testing.assert_array_equal(asp.gap_distribution(gap, masked).counts, found.counts)
+    masked[1, 2] = np.ma.masked
+    with pytest.raises(ArrayError) as refused:
+        asp.gap_distribution(gap, masked)
+    assert refused.value.argument == "contact_map" and "masked" in str(refused.value)
+
+
 HOSTILE = [
     np.zeros((2, 3), dtype=complex),
     np.zeros((2, 3), dtype=object),
