@@ -81,6 +81,11 @@ pub(crate) struct Beside {
     pub(crate) notes: Vec<String>,
 }
 
+/// Whether two names are of one folder that is there.
+pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
+    one.canonicalize().ok().zip(other.canonicalize().ok()).is_some_and(|(one, other)| one == other)
+}
+
 /// The files of a folder that are of a record: those that are not older. Without a record all.
 pub(crate) fn of(folder: &Path, record: Option<SystemTime>) -> Beside {
     let mut beside = Beside::default();

@@ -79,9 +79,10 @@ impl<'a> Source<'a> {
         self
     }
 
-    /// With the tables of a folder, whatever their age.
+    /// With the tables of a folder, whatever their age; once, if the record lies in it too.
     #[must_use]
     pub fn with_folder(mut self, folder: &Path) -> Self {
+        self.folders.retain(|(other, _)| !beside::is_same(other, folder));
         self.folders.push((folder.to_path_buf(), None));
         self
     }

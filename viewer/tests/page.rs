@@ -352,5 +352,7 @@ fn tables_beside_the_record_are_shown() -> Result<(), Box<dyn std::error::Error>
     );
     let (all, _) = shown(&|source| source.with_folder(Path::new(&folder.0)))?;
     assert_eq!(files(&all), ["creep.csv", "leak.csv"]);
+    let (both, _) = shown(&|source| source.beside(&record_file).with_folder(&folder.0.join(".")))?;
+    assert_eq!(files(&both), files(&all));
     Ok(())
 }

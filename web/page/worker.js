@@ -10,6 +10,8 @@ const PART = 12;
 const LARGEST = 400e6;
 
 let surface, path, isRunning = false, elapsed = 0;
+/** How many surfaces the page has asked for. */
+let asks = 0;
 
 const ready = init({ module_or_path: new URL("asperity_bg.wasm", import.meta.url) }).then(() => {
   begin();
@@ -85,6 +87,13 @@ async function run() {
   if (failed) postMessage({ type: "fault", of: "path", fault: failed });
 }
 
+/** The same; what breaks outside of a step, as where a picture finds no memory, ends it and is told too. */
+const follow = () => run().catch((error) => {
+  isRunning = false;
+  postMessage({ type: "whole", data: null, isOver: true });
+  postMessage({ type: "fault", of: "path", fault: fault(error) });
+});
+
 const MADE = {
   record: () => ["path.npz", "application/octet-stream", path.record()],
   report: () => ["report.html", "text/html", path.report()],
@@ -92,6 +101,8 @@ const MADE = {
 };
 
 onmessage = async ({ data: { type, ...asked } }) => {
+  if (type === "read" || type === "generate") asks++;
+  const mine = asks;
   await ready;
   if (type === "read") {
     const { file, reading } = asked;
@@ -107,6 +118,8 @@ onmessage = async ({ data: { type, ...asked } }) => {
       postMessage({ type: "fault", of: type, fault: { kind: "other", message: `${file.name} cannot be read: ${error.message}` } });
       return;
     }
+    // While a large file was on its way, the page may have asked for another surface.
+    if (mine !== asks) return;
     told(type, () => take(WebSurface.read(bytes, file.name, JSON.stringify(reading))));
   } else if (type === "generate") told(type, () => take(WebSurface.generate(JSON.stringify(asked.generation))));
   else if (type === "run") {
@@ -115,9 +128,9 @@ onmessage = async ({ data: { type, ...asked } }) => {
       path = undefined;
       path = new WebPath(surface, JSON.stringify(asked.job));
       elapsed = 0;
-      run();
+      follow();
     });
   } else if (type === "stop") isRunning = false;
-  else if (type === "go-on") run();
+  else if (type === "go-on") follow();
   else if (type === "save") told(type, () => postMessage({ type: "saved", made: MADE[asked.what]() }));
 };
