@@ -43,7 +43,7 @@
 //! gauge is used, and what is reported does not depend on that of the kernel. The approach is that of
 //! the mean planes, displacements are about their mean, and of the stiffnesses only the interfacial one
 //! exists. Up to full contact an approach can be prescribed as well; from there on it stays the mean
-//! initial gap, whatever the load.
+//! initial gap, whatever the load, but for the error of the gaps.
 //!
 //! # Many states
 //!

@@ -115,7 +115,6 @@ impl FixedLoadSolution {
         let contact_nodes = in_contact.iter().filter(|is_in| **is_in).count();
         // Gaps in contact are closed to within the tolerance: left out, full contact is exact.
         let open = |node: usize| if in_contact[node] { 0.0 } else { gaps[node] };
-        let load_is_given = load.is_some();
         let load = load.unwrap_or(cell_area * sum(p));
         let plastic = yielded.map(|(_, yielded)| {
             let (count, depth) =
@@ -129,13 +128,6 @@ impl FixedLoadSolution {
             }
         });
         let mean_gap = sum_over(nodes, open) / nodes as f64;
-        // In full contact mean planes have come as close as they can, whereas the multiplier is right to the tolerance.
-        let has_yielded = yielded_map.iter().any(|it| *it);
-        let is_at_rest = level.gauge.is_some() && load_is_given && !has_yielded;
-        let approach = match contact_nodes == nodes && is_at_rest {
-            true => level.mean_initial_gap(),
-            false => approach,
-        };
         let contact = ContactState {
             energy: 0.5 * cell_area * dot(p, displacement.as_slice()),
             plastic,

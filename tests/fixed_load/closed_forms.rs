@@ -65,33 +65,6 @@ fn full_contact_is_the_pseudo_inverse() {
     }
 }
 
-/// In full contact of a periodic half-space the approach is the mean initial gap under any load, alone and in a sweep,
-/// however coarse the tolerance.
-#[test]
-fn mean_planes_rest_in_full_contact() {
-    let grid = Grid::square(32, 1.0).unwrap();
-    let map = rough(&grid, 3);
-    let mean_gap = initial_gap(&map, &grid).mean();
-    for kernel in Kernel::periodic(grid, 1.0) {
-        let full = pseudo_inverse(&kernel, &initial_gap(&map, &grid)).max() * grid.nominal_area();
-        for tolerance in [1e-4, 1e-8, 1e-11] {
-            let mut solver = solver(&map, &kernel, tolerance);
-            let loads = [1.1, 3.0, 10.0, 1e3, 1e5].map(|factor| factor * full);
-            let alone = loads.map(|load| solver.solve(load).unwrap());
-            let targets = loads.map(ContactTarget::Load);
-            let swept = solver.sweep(targets).map(Result::unwrap);
-            for solution in alone.into_iter().chain(swept) {
-                let state = solution.contact;
-                assert_eq!((state.contact_nodes, state.mean_gap), (grid.nodes(), 0.0));
-                // Two sums of 1024 numbers.
-                assert!(relative(state.approach, mean_gap) < 1e-14, "{tolerance:e}: {state:?}");
-                let certificate = solution.certificate;
-                assert!(certificate.greatest_contact_gap <= tolerance, "{certificate:?}");
-            }
-        }
-    }
-}
-
 /// The approach of a periodic half-space determines the state up to full contact, and no farther.
 #[test]
 fn approaches_up_to_the_mean_gap() {
