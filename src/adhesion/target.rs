@@ -91,7 +91,8 @@ impl Targets {
         nearest.into_iter().flatten().map(|(_, target)| target)
     }
 
-    /// `Ok` if all lie ahead of a state, or at it but for rounding. From where the surfaces are apart a load that pulls is one, if they stick.
+    /// `Ok` if all lie ahead of a state, or at it but for rounding. From where the surfaces are apart a load that pulls
+    /// does, if they stick.
     pub(super) fn check_ahead(
         &self,
         state: &ContactState,
