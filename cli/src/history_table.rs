@@ -30,8 +30,8 @@ impl HistoryTable {
             .map_err(|wrong| Failure::request(format!("cannot use {}: {wrong}", file.display())))
     }
 
-    /// Cells end at semicolons, tabs or commas, whichever of these the first line has first; where they end at no commas,
-    /// a comma is a decimal point.
+    /// Cells end at semicolons, tabs or commas, whichever of these the first line has first; where they do not end at
+    /// commas, a comma is a decimal point.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let is_remark = |line: &str| line.is_empty() || line.starts_with('#');

@@ -68,7 +68,7 @@ impl AdhesiveBranch {
     }
 
     /// The load \[N\] at an approach \[m\], the first time that the branch is there: exact, since both are linear
-    /// between two events. `None` for an approach that none of its states is at or beyond: a branch that has turned around
+    /// between two events. `None` for an approach that no two of its states enclose: a branch that has turned around
     /// begins with its first event.
     #[must_use]
     pub fn load_at(&self, approach: f64) -> Option<f64> {

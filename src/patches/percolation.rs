@@ -27,8 +27,8 @@ pub(super) const CHANNELS: Connectivity = Connectivity::Four;
 ///   seals no sooner than the last channel that winds is closed. Where the boundary does not repeat both are the same.
 ///
 /// Patches have the `connectivity` given. Channels pass through the sides of cells, as [flow](crate::leak) does,
-/// whatever the connectivity, so that a patch and a channel never cross. With [`Connectivity::Eight`] on a free boundary
-/// one of the two leads along one direction exactly if the other does not lead along the other: `leak_x` is
+/// whatever the connectivity, so that a patch and a channel never cross. With [`Connectivity::Eight`] on a free
+/// boundary one of the two leads along one direction exactly if the other does not lead along the other: `leak_x` is
 /// `contact_y`, and `leak_y` is `contact_x`.
 ///
 /// Nodes that never touch are open throughout. Both take O(n α(n)), the channels from the last state backwards.

@@ -179,8 +179,8 @@ pub(super) fn latin1(bytes: &[u8]) -> String {
 #[cfg(feature = "io")]
 const SHARED: usize = 128;
 
-/// A text that many maps of a file may share, without what is beyond [`SHARED`]: a long one does not take its length once
-/// for each.
+/// A text that many maps of a file may share, without what is beyond [`SHARED`]: a long one does not take its length
+/// once for each.
 #[cfg(feature = "io")]
 pub(super) fn shared(text: &str) -> String {
     text.chars().take(SHARED).collect()
