@@ -291,7 +291,7 @@ fn paths_end_at_approaches_below_zero() -> Done {
         let far = output(&folder.0, &format!("{SOFT} {STICKS} --max-approach -5um {way}"))?;
         is_refused(&far, &["the path is at", "already"]);
         let elastic = output(&folder.0, &format!("{SOFT} --max-approach -0.2um {way}"))?;
-        is_refused(&elastic, &["--max-approach -0.0000002 m must be positive"]);
+        is_refused(&elastic, &["--max-approach -200 nm must be positive"]);
     }
     Ok(())
 }
