@@ -245,15 +245,17 @@ impl Trial<'_> {
         let Some(state) = self.path.state() else { return Ok(()) };
         let ContactState { approach, contact_nodes, .. } = state.contact;
         let pulled = contact_nodes + state.soft_nodes + state.cohesive_nodes;
+        // It is that of mean planes, from which all that they have ever been displaced by is taken off.
+        let nodes = self.path.grid().nodes();
+        let reach = self.length() + to.abs() + self.gauge.abs() * self.greatest * nodes as f64;
         match self.path.end() {
             Some(AdhesiveEnd::Target) => ensure!(
-                state.event != AdhesiveEvent::Limit || approach == to,
+                state.event != AdhesiveEvent::Limit || (approach - to).abs() <= self.slack * reach,
                 "a branch to {to} ends at {approach}"
             ),
-            _ if is_loading => ensure!(
-                contact_nodes == self.path.grid().nodes(),
-                "nothing more happens below {to}: {state:?}"
-            ),
+            _ if is_loading => {
+                ensure!(contact_nodes == nodes, "nothing more happens below {to}: {state:?}")
+            }
             _ => ensure!(pulled == 0, "nothing more happens above {to}: {state:?}"),
         }
         Ok(())
