@@ -108,17 +108,17 @@ impl AdhesiveBuilder<'_> {
         let fixed = Problem::bytes_on(&grid, boundary)
             .saturating_add(Convolution::bytes_on(&grid, boundary))
             .saturating_add(FIELDS * size_of::<f64>() * grid.nodes());
-        let left = budget.checked_sub(fixed);
-        let left = left.ok_or(Error::MemoryBudget { needed: fixed, budget, nodes_that_fit: 0 })?;
+        let memory = Memory { budget, fixed };
+        memory.check(0, 0)?;
         let problem = Problem::new(self.surface, self.kernel)?;
         if problem.growth() == ContactGrowth::Unknown {
             return Err(AdhesionError::GrowthUnknown.into());
         }
         let law = self.law.of(problem.table())?;
         let targets = Targets::of(&self.targets, &grid)?;
-        let body = Body::new(Arc::new(problem), law, Memory { budget, fixed });
+        let body = Body::new(Arc::new(problem), law, memory);
         targets.check_ahead(&body.apart(), Direction::Loading, law.work() > 0.0)?;
-        let plain = (law.work() == 0.0).then(|| self.plain(&targets, left)).transpose()?;
+        let plain = (law.work() == 0.0).then(|| self.plain(&targets, memory.left())).transpose()?;
         let window_size = self.window_size.map(|size| size.min(grid.nodes()));
         Ok(AdhesivePath::new((body, self.law), targets, (window_size, plain)))
     }

@@ -412,8 +412,8 @@ impl AdhesivePath {
         };
         if event == AdhesiveEvent::Limit {
             let pull = area * self.body.law.stress() * (soft_nodes + cohesive_nodes) as f64;
-            let length = self.body.problem.greatest_gap() + self.body.law.range();
-            self.targets.place(&mut state.contact, [pull + load.abs(), length + approach.abs()]);
+            let length = self.body.greatest_length(approach);
+            self.targets.place(&mut state.contact, [pull + load.abs(), length]);
         }
         self.queue.push_back(state);
     }

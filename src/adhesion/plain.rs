@@ -134,16 +134,19 @@ impl Plain {
         self.now = last;
         // It parts where it touched, with a pressure of 0: the state is the one of its touch, without this node among
         // those in contact, and with the stiffnesses before it touched.
-        let grid = self.path.grid();
-        let ContactState { approach, load, mean_gap, energy, .. } = state.contact;
-        let before = last.checked_sub(1).map(|before| self.touches[before].contact);
-        let contact = ContactState {
-            contact_stiffness: before.map_or(Some(0.0), |before| before.contact_stiffness),
-            interfacial_stiffness: before.map_or(Some(0.0), |before| before.interfacial_stiffness),
+        Ok(Some((AdhesiveEvent::Part, state.node, self.with_nodes(last, state.contact))))
+    }
+
+    /// A state at which only the first `nodes` are in contact, of those that touch there.
+    fn with_nodes(&self, nodes: usize, state: ContactState) -> ContactState {
+        let ContactState { approach, load, mean_gap, energy, .. } = state;
+        let since = nodes.checked_sub(1).map(|last| self.touches[last].contact);
+        ContactState {
+            contact_stiffness: since.map_or(Some(0.0), |since| since.contact_stiffness),
+            interfacial_stiffness: since.map_or(Some(0.0), |since| since.interfacial_stiffness),
             energy,
-            ..ContactState::new(&grid, last, approach, load, mean_gap)
-        };
-        Ok(Some((AdhesiveEvent::Part, state.node, contact)))
+            ..ContactState::new(&self.path.grid(), nodes, approach, load, mean_gap)
+        }
     }
 
     /// Ends the branch at the first target on the way to a state, 1 or −1, if there is one.
@@ -172,14 +175,9 @@ impl Plain {
         });
         let found = passed.unwrap_or(first.contact);
         // Of nodes that touch together some may be in contact, and have to stay.
-        let contact = match self.now.checked_sub(1).map(|last| self.touches[last].contact) {
-            Some(since) if found.contact_nodes != self.now => ContactState {
-                contact_stiffness: since.contact_stiffness,
-                interfacial_stiffness: since.interfacial_stiffness,
-                energy: found.energy,
-                ..ContactState::new(&grid, self.now, found.approach, found.load, found.mean_gap)
-            },
-            _ => found,
+        let contact = match found.contact_nodes == self.now {
+            true => found,
+            false => self.with_nodes(self.now, found),
         };
         Ok(Some((AdhesiveEvent::Limit, node, contact)))
     }

@@ -16,7 +16,7 @@ const AROUND: usize = 4;
 /// is none. On exact paths on 8 × 8 to 64 × 64 nodes it was up to 1.7 times as wide where nodes touch together.
 const MARGIN: f64 = 10.0;
 /// How many times the error of the approach nodes may overlap by: where they touch together it was up to 1.2 times.
-const OVERLAP: f64 = 4.0;
+const OF_APPROACH: f64 = 4.0;
 /// What a rate is that neither over- nor underflows.
 const IN_RANGE: &str = "positive and finite in the units of the input";
 
@@ -113,9 +113,8 @@ impl Seal {
         // Nodes in contact have none, but for rounding.
         let in_contact = gap.iter().zip(&contact_map).filter(|(_, is_in_contact)| **is_in_contact);
         let greatest = in_contact.map(|(gap, _)| gap.abs()).fold(0.0, f64::max);
-        let initial = path.problem().initial_gap().iter().copied().fold(0.0, f64::max);
-        let none = MARGIN * greatest.max(f64::EPSILON * initial);
-        let overlap = none + OVERLAP * state.approach_error;
+        let none = MARGIN * greatest.max(f64::EPSILON * path.problem().greatest_gap());
+        let overlap = none + OF_APPROACH * state.approach_error;
         for gap in gap.iter_mut().filter(|gap| (-overlap..=none).contains(*gap)) {
             *gap = 0.0;
         }
