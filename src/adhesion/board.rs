@@ -207,10 +207,7 @@ impl Board {
             let [dp, dgap] = self.rates(place);
             let row = self.rows[place];
             let [pressure, gap] = [row.pressure + step * dp, row.gap + step * dgap];
-            if row.state == NodeState::Held {
-                let change = self.law.energy(gap) - self.law.energy(row.gap);
-                lost -= change + 0.5 * (row.pressure + pressure) * (gap - row.gap);
-            }
+            lost += self.lost(&row, [pressure, gap]);
             self.rows[place] = Row { pressure, gap, ..row };
         }
         let rates = self.sum_rates();
@@ -219,6 +216,22 @@ impl Board {
             hold.pull = -self.rows[place].pressure;
         }
         lost
+    }
+
+    /// What the traction of a row loses against its law on a straight way to this pressure and gap; nothing but for held
+    /// nodes.
+    fn lost(&self, row: &Row, [pressure, gap]: [f64; 2]) -> f64 {
+        if row.state != NodeState::Held {
+            return 0.0;
+        }
+        let change = self.law.energy(gap) - self.law.energy(row.gap);
+        -(change + 0.5 * (row.pressure + pressure) * (gap - row.gap))
+    }
+
+    /// What held nodes lose on the way from where the rows have led to the solution there, pressure and gap of a node.
+    /// Near an instability that is long: the lag of one pull, over the least pivot.
+    pub(super) fn lost_to(&self, solution: impl Fn(usize) -> [f64; 2]) -> f64 {
+        self.rows.iter().map(|row| self.lost(row, solution(row.node))).sum()
     }
 
     fn change(&mut self, place: usize, to: NodeState) {

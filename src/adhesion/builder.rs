@@ -17,6 +17,9 @@ use crate::{ContactGrowth, Error, InfluenceKernel, LoadingSolver, Problem, Surfa
 /// Fields of the grid that a path holds.
 const FIELDS: usize = 24;
 
+/// Over the height of a surface, a range beside which six digits of heights are left.
+const LONGEST: f64 = 1e9;
+
 /// The settings of an [`AdhesivePath`]; see [`AdhesivePath::builder`].
 #[must_use]
 pub struct AdhesiveBuilder<'a> {
@@ -95,7 +98,8 @@ impl AdhesiveBuilder<'_> {
     ///
     /// # Errors
     ///
-    /// Those of [`Problem::new`] and of [`Adhesion::on`]; [`AdhesionError::GrowthUnknown`] for a kernel of
+    /// Those of [`Problem::new`] and of [`Adhesion::on`]; [`Error::OutOfRange`] for a range beside which heights are
+    /// rounding; [`AdhesionError::GrowthUnknown`] for a kernel of
     /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] and [`AdhesionError::Behind`] for targets that make no sense;
     /// [`Error::MemoryBudget`] if not even the grid fits.
     pub fn build(self) -> Result<AdhesivePath, Error> {
@@ -115,6 +119,10 @@ impl AdhesiveBuilder<'_> {
             return Err(AdhesionError::GrowthUnknown.into());
         }
         let law = self.law.of(problem.table())?;
+        // Gaps are differences of lengths as great as the range.
+        let longest = LONGEST * problem.greatest_gap().max(law.resolution() * law.range());
+        let expected = "at most 10⁹ times the height of the surface, or what the pull displaces";
+        Error::require("range of adhesion", law.range(), law.range() <= longest, expected)?;
         let targets = Targets::of(&self.targets, &grid)?;
         let body = Body::new(Arc::new(problem), law, memory);
         targets.check_ahead(&body.apart(), Direction::Loading, law.work() > 0.0)?;

@@ -112,6 +112,8 @@ pub(super) fn follow(
                 continue;
             }
         };
+        let lost = play.board.lost_to(|node| [field.pressure[0][node], field.gap[0][node]]);
+        play.totals.dissipated += play.area() * lost;
         return Ok(Some(Played {
             front: ended,
             field,

@@ -2,7 +2,9 @@
 
 use asperity::adhesion::{Adhesion, AdhesiveBranch, AdhesiveEvent, AdhesivePath};
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Boussinesq, ContactTarget, Grid, InfluenceKernel, PeriodicBoussinesq, Surface};
+use asperity::{
+    Boussinesq, ContactTarget, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Surface,
+};
 use nalgebra::DMatrix;
 
 fn flat(nodes: usize) -> HeightMap {
@@ -196,5 +198,26 @@ fn strips_and_long_cells() {
             assert_eq!((last.contact.load, last.soft_nodes), (0.0, 0));
             assert!((last.work - last.dissipated).abs() < 1e-12 * 5e-3 * grid.nominal_area());
         }
+    }
+}
+
+/// Beside a range of 10¹³ heights no digit of these is left, and the square of the greatest ranges is no number: both are
+/// refused. A long range alone changes nothing but the pull.
+#[test]
+fn ranges_beside_which_heights_are_rounding() {
+    let kernel = Boussinesq::new(Grid::square(8, 8e-3).unwrap(), 1e9).unwrap();
+    let heights = DMatrix::from_fn(8, 8, |ix, iy| 1e-6 * ((5 * ix + 3 * iy) % 7) as f64);
+    let surface = HeightMap::new(heights).unwrap();
+    let last = |range: f64| {
+        let law = Adhesion::work(0.05).range(range);
+        let mut path = AdhesivePath::builder(&surface, &kernel, law).build()?;
+        Ok::<f64, Error>(path.run()?.states().last().unwrap().contact.load)
+    };
+    // The pull is 0.1 Pa and less; lengths of 10⁻⁶ m are known to 10⁻¹⁰ of 1 m, and to 10⁻⁷ of 100 m.
+    let [near, far] = [1.0, 100.0].map(|range| last(range).unwrap());
+    assert!((far / near - 1.0).abs() < 1e-6, "{near} {far}");
+    for range in [1e7, 1e20, 1e150, 1e160, 1e300] {
+        let refused = last(range);
+        assert!(matches!(refused, Err(Error::OutOfRange { .. })), "{range:e}: {refused:?}");
     }
 }
