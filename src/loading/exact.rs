@@ -14,8 +14,8 @@ use super::state::ContactEvent;
 use super::tolerances::ties_until;
 use super::trial::{Trial, of_nodes};
 use super::tuning::{
-    AS_MANY_AGAIN, FEWEST_BETWEEN_RELEASES, LEAST_RATE, MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE,
-    TOLERANCE,
+    AS_MANY_AGAIN, FEWEST_BETWEEN_RELEASES, LEAST_RATE, MULTIPLE, OF_RESIDUAL, RECOGNISED, SHALLOW,
+    SQUARE, TOLERANCE,
 };
 use super::walk::{Carried, Walk};
 use super::window::{Watched, Window};
@@ -43,6 +43,8 @@ pub(super) struct Exact {
     ranking: Ranking,
     /// Whether the present solution is one of the factor before the last nodes yielded.
     is_behind: bool,
+    /// The error of the state that the path goes on from, if that is an estimate.
+    inherited: f64,
 }
 
 /// What is known when a window begins.
@@ -56,7 +58,19 @@ struct Survey {
 
 impl Exact {
     pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
-        Self { growth, size, window: Window::default(), ranking: Ranking::new(), is_behind: false }
+        Self {
+            growth,
+            size,
+            window: Window::default(),
+            ranking: Ranking::new(),
+            is_behind: false,
+            inherited: 0.0,
+        }
+    }
+
+    /// Goes on from a state of which the approach may be off by `error`.
+    pub(super) fn inherit(&mut self, error: f64) {
+        self.inherited = error;
     }
 
     /// Computes a window of states with at most `most_nodes` in contact, which must be more than there are; none if
@@ -202,7 +216,10 @@ impl Exact {
     fn survey(&mut self, run: &mut LoadingRun) -> Result<Survey, Error> {
         if let Some(plastic) = run.plastic.clone().filter(|plastic| plastic.count() > 0) {
             let tolerance = TOLERANCE * (run.problem.grid().cell_aspect() / SQUARE).max(1.0);
-            let gap = tolerance * (run.problem.greatest_gap() + run.scalars.approach());
+            let length = run.problem.greatest_gap() + run.scalars.approach();
+            // Nodes that have yielded by an estimate may not be as deep as that by a factor.
+            let estimated = if self.inherited > 0.0 { SHALLOW * length } else { 0.0 };
+            let gap = (tolerance * length).max(self.inherited).max(estimated);
             let slack = Slack { gap, tension: gap, excess: gap, rate: TOLERANCE };
             let rates = survey(run, &plastic, &mut self.ranking, slack)?;
             let times = self.ranking.iter().map(|&(time, _)| time);

@@ -65,6 +65,7 @@ impl LoadingPath {
             self.handed_over_at = Some(order.len());
         }
         self.single.inherit(last.approach_error);
+        self.exact.inherit(last.approach_error);
         phase.renew_field(run, run.scalars.approach())?;
         run.scalars.renew_load(&run.problem, &run.contact, &run.field);
         let snapshot = Snapshot::of(run, phase, &last)?;

@@ -193,6 +193,10 @@ pub(super) const RECOGNISED: f64 = 1e-6;
 /// The same where the approach of its event is an estimate: loads err by 3·10⁻⁵ at worst.
 pub(super) const ESTIMATED: f64 = 1e-4;
 
+/// Beside lengths, by how much nodes that have yielded on a path without a factor may not be as deep yet as one with a
+/// factor finds them: a hundred times the default tolerance of the pressures that it found, whose yields it is.
+pub(super) const SHALLOW: f64 = 1e-6;
+
 // Events one at a time
 
 /// Rates below this, relative to the greatest, are nothing but rounding where either sign is possible:

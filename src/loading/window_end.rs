@@ -180,17 +180,25 @@ impl LoadingPath {
             let stiffness = |state: &ContactState| {
                 state.contact_stiffness.or(state.interfacial_stiffness).unwrap_or_default()
             };
+            let known = &front.contact;
+            // Of a periodic body that has yielded everywhere nothing elastic is left but a difference of works.
+            let work = known.load * (known.approach.abs() + known.mean_gap.abs());
             let pairs = [
-                (own.approach, front.contact.approach),
-                (own.load, front.contact.load),
-                (own.energy, front.contact.energy),
-                (stiffness(&own), stiffness(&front.contact)),
+                ("approach", own.approach, known.approach, 0.0),
+                ("load", own.load, known.load, 0.0),
+                ("energy", own.energy, known.energy, work),
+                ("stiffness", stiffness(&own), stiffness(known), 0.0),
             ];
             // They are those of the last state, but for a load that must not fall by rounding, and a stiffness that is
             // infinite.
-            let is_front =
-                pairs.iter().all(|(a, b)| a == b || (a - b).abs() <= RECOGNISED * b.abs());
-            if !is_front || !is_behind || !at_front.is_sound(&own) {
+            let is_other = |&&(_, a, b, unit): &&(&str, f64, f64, f64)| {
+                let is_same = a == b || (a - b).abs() <= RECOGNISED * unit.max(b.abs());
+                !is_same
+            };
+            if let Some(&(quantity, found, ..)) = pairs.iter().find(is_other) {
+                return Err(not_on_path(front, quantity, found, "that of the state"));
+            }
+            if !is_behind || !at_front.is_sound(&own) {
                 return Err(not_on_path(front, "load", own.load, "the load of the state"));
             }
         }
@@ -198,6 +206,7 @@ impl LoadingPath {
             self.exact.follow_on(&end.log, end.solution.is_some());
             // Events of a factor are exact but for what was inherited.
             self.single.inherit(front.approach_error);
+            self.exact.inherit(front.approach_error);
             if let Some(solution) = &end.solution {
                 let approach = run.scalars.approach();
                 run.field.place(&run.contact, solution.clone(), approach)?;

@@ -77,10 +77,10 @@ pub(crate) trait Iterations: Debug + Send + Sync {
         solution: &Solution,
     ) -> Result<(), Error>;
 
-    /// All on which later answers depend besides problem and contact, as plain numbers, at the end of a window; `None`
-    /// if these iterations cannot be restored from there.
-    fn keep(&self, problem: &Problem, contact: &ContactSequence) -> Option<Kept> {
-        let _ = (problem, contact);
+    /// All on which later answers depend besides problem and contact, as plain numbers, at the end of a window of a path
+    /// on which nodes may yield or not; `None` if these iterations cannot be restored from there.
+    fn keep(&self, problem: &Problem, contact: &ContactSequence, may_yield: bool) -> Option<Kept> {
+        let _ = (problem, contact, may_yield);
         None
     }
 

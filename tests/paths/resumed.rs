@@ -4,11 +4,11 @@ use crate::common::surface;
 use crate::problems::{grid, rough};
 use asperity::loading::{History, LoadingBuilder};
 use asperity::record::LoadingRecord;
-use asperity::surface::HeightMap;
+use asperity::surface::{Axis, HeightMap};
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boussinesq, ContactEvent, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver,
-    LoadingState, PeriodicBoussinesq, Spectral,
+    LoadingState, PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
 use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
@@ -108,6 +108,60 @@ fn with_a_factor_and_a_hardness() {
 #[test]
 fn without_a_factor_and_with_a_hardness() {
     with_a_hardness(&ConjugateGradient::new());
+}
+
+/// On small grids, behind every state: windows end with no elastic node in contact, or begin where the first node is about
+/// to yield, and terraces yield together.
+#[test]
+fn behind_every_state_of_small_grids_with_a_hardness() {
+    let rough = |seed: u64, nx: usize, ny: usize| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        DMatrix::from_fn(nx, ny, |_, _| random.random_range(-1e-6..1e-6))
+    };
+    let terraces = rough(7, 8, 8).map(|height| if height > 0.0 { 1e-6 } else { 0.0 });
+    for (heights, hardness) in
+        [(rough(1, 6, 6), 1e8), (rough(4, 5, 8), 6e9), (rough(2, 7, 1), 2e9), (terraces, 1e9)]
+    {
+        let (nx, ny) = heights.shape();
+        let grid = Grid::new(nx, ny, 1e-5, 1e-5).unwrap();
+        let heights = HeightMap::new(heights).unwrap();
+        for (_, kernel) in half_spaces(grid) {
+            let builder = || LoadingSolver::builder(&heights, &*kernel).hardness(hardness);
+            let exact = builder().updater(RecursiveCholesky::new());
+            let all = whole(exact.clone());
+            let at: Vec<usize> = (1..all.len()).collect();
+            interrupt(&exact, &all, &at, &identical);
+            let iterative = builder().updater(ConjugateGradient::new());
+            let all = whole(iterative.clone());
+            let at: Vec<usize> = (1..all.len()).collect();
+            interrupt(&iterative, &all, &at, &identical);
+            // A factor goes on behind each of these states too, to the same end.
+            let full = all.last().unwrap().contact.load;
+            for at in at {
+                let before: History = all[..at].iter().copied().collect();
+                let resumed = exact.clone().resume(&before).unwrap();
+                let last = resumed.map(Result::unwrap).last().unwrap();
+                assert!((last.contact.load / full - 1.0).abs() < 1e-6, "{at}: {last:?}");
+            }
+        }
+    }
+}
+
+/// What the sums at the end of a window lack, where all nodes but a few are plastic, a record may have.
+#[test]
+fn records_hold_paths_that_are_estimated_to_their_plastic_end() {
+    let rows = [[0, 0, 0, 0, 1], [1, 1, 1, 1, 1], [0, 0, 0, 1, 0]];
+    let heights = DMatrix::from_fn(5, 3, |ix, iy| 1e-6 * f64::from(rows[iy][ix]));
+    let heights = HeightMap::new(heights).unwrap();
+    let grid = Grid::new(5, 3, 1e-5, 1e-5).unwrap();
+    let kernel = SemiPeriodicBoussinesq::new(grid, 1e11, Axis::X).unwrap();
+    for hardness in [1e10, 1.3e10, 1.319e10] {
+        let builder = LoadingSolver::builder(&heights, &kernel).hardness(hardness);
+        let mut path = builder.updater(ConjugateGradient::new()).build().unwrap();
+        let states: History = path.by_ref().map(Result::unwrap).collect();
+        let record = LoadingRecord::new(&path, states).unwrap();
+        assert_eq!(through_a_file(&record).states(), record.states());
+    }
 }
 
 fn with_a_hardness<U: LinearUpdater + Clone>(updater: &U) {

@@ -63,7 +63,7 @@ impl Estimated {
         if !is_single && self.ranked != Some((run.contact.revision(), approach)) {
             return None;
         }
-        let kept = iterations.keep(&run.problem, &run.contact)?;
+        let kept = iterations.keep(&run.problem, &run.contact, run.plastic.is_some())?;
         (kept.approach == approach).then(|| EstimatedEnd {
             settles: self.settles,
             joined: if is_single { Vec::new() } else { self.joined.clone() },

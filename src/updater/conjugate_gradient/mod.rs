@@ -140,8 +140,8 @@ impl Iterations for ConjugateGradient {
         Ok(())
     }
 
-    fn keep(&self, problem: &Problem, contact: &ContactSequence) -> Option<Kept> {
-        self.solutions.as_ref()?.keep_all(self.criteria, problem, contact)
+    fn keep(&self, problem: &Problem, contact: &ContactSequence, may_yield: bool) -> Option<Kept> {
+        self.solutions.as_ref()?.keep_all(self.criteria, problem, contact, may_yield)
     }
 
     fn restore(

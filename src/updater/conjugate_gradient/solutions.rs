@@ -388,7 +388,11 @@ impl Solutions {
             most_drift: tolerances.drift[0],
             max_iterations,
         };
-        let mut base = from.load_at(approach);
+        // Without any length, as at the first touch of a flat surface, nothing is pressed.
+        let mut base = match length {
+            0.0 => Field::zero(gap.len()),
+            _ => from.load_at(approach),
+        };
         // In the problem before, in which the nodes that yield were not a load yet.
         let overlap_before =
             |node: usize| overlap(node) + behind.load.get(node).copied().unwrap_or(0.0);

@@ -18,6 +18,7 @@ impl Solutions {
         criteria: Criteria,
         problem: &Problem,
         contact: &ContactSequence,
+        may_yield: bool,
     ) -> Option<Kept> {
         let now = &self.now;
         let is_whole = now.count == contact.len() && now.load.is_known() && now.rate.is_known();
@@ -42,8 +43,8 @@ impl Solutions {
             beside,
             ..Kept::default()
         };
-        // They are not used elsewhere.
-        if has_directions(problem, &all) {
+        // They serve row sums, which are all the same elsewhere, and sums beside nodes that yield.
+        if problem.boundary() != Boundary::Periodic || may_yield {
             all.directions = self.directions.values().map(<[f32]>::to_vec).collect();
             all.marks = self.directions.marks();
         }
@@ -152,10 +153,8 @@ impl Solutions {
             restored.solver.check(&field, SUMS_TOLERANCE * most)?;
             restored.sums = RowSums::of(kept.sums_of, field, start);
         }
-        if has_directions(problem, kept) {
-            let values = kept.directions.iter().cloned();
-            restored.directions = restored.solver.recall_directions(values, kept.marks)?;
-        }
+        let directions = kept.directions.iter().cloned();
+        restored.directions = restored.solver.recall_directions(directions, kept.marks)?;
         let mut fixed = Vec::new();
         if let Some(beside) = &kept.beside {
             let set = with_yielded(contact, &beside.yielded);
@@ -169,8 +168,13 @@ impl Solutions {
                 false => restored_field(problem, &set, field),
             };
             let fields = [of(a)?, of(b)?, of(c)?];
-            for field in &fields {
-                let most = greatest(field.displacement.len(), 0.0, |i| field.displacement[i].abs());
+            // Of a few elastic nodes in contact a field is nearly nothing, and what it was solved for is not, or the other way
+            // round.
+            let [unit, load] = &beside.under;
+            for (field, rhs) in fields.iter().zip([problem.row_sums(), unit, load]) {
+                let own = &field.displacement;
+                let most = greatest(own.len(), 0.0, |i| own[i].abs());
+                let most = greatest(rhs.len(), most, |i| rhs[i].abs());
                 restored.solver.check(field, SUMS_TOLERANCE * most)?;
             }
             restored.plastic_sums = PlasticSums::of_parts(fields, beside.under.clone());
@@ -193,11 +197,6 @@ impl Solutions {
         }
         Ok(restored)
     }
-}
-
-/// Whether the search directions of the last solution serve sums.
-fn has_directions(problem: &Problem, kept: &Kept) -> bool {
-    problem.boundary() != Boundary::Periodic || kept.beside.is_some()
 }
 
 /// The contact beside which nodes were proposed.
