@@ -161,7 +161,9 @@ impl<'a> Bed<'a> {
             mean_gaps: of(|state| state.contact.mean_gap),
             energies,
             stiffnesses: states.iter().map(stiffness).collect::<Result<_, _>>()?,
-            is_full: before.contact.contact_area_fraction == 1.0,
+            // With a hardness nodes yield behind full contact.
+            is_full: before.contact.contact_area_fraction == 1.0
+                && before.contact.plastic.is_none(),
         })
     }
 

@@ -21,6 +21,21 @@ pub enum StressError {
         thickness: f64,
     },
 
+    /// Behind the first node that yields at its hardness stresses do not grow steadily, and at the end of the path they
+    /// are below the yield stress.
+    #[error(
+        "von Mises' stress is {reached} Pa at the load of {load} N, where the first node yields at its hardness, and below \
+         {yield_stress} Pa at the end of the path. In between it may have been above: look at stresses of single states"
+    )]
+    BehindHardness {
+        /// The yield stress that was asked for \[Pa\].
+        yield_stress: f64,
+        /// The load at which the first node yields \[N\].
+        load: f64,
+        /// The greatest von Mises stress there \[Pa\].
+        reached: f64,
+    },
+
     /// Not one yield stress for each layer and the base.
     #[error(
         "the body has {materials} materials from the uppermost layer to the base, and {given} yield stresses are given"

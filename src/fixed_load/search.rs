@@ -159,7 +159,7 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
     for _ in 0..MOST_STEPS {
         if let Some(greatest) = stepper.greatest_load() {
             // No state has that load.
-            let most = greatest.ln() - NARROWEST.sqrt();
+            let most = greatest.ln() - 10.0 * NARROWEST;
             if x > most && low == Some(most) {
                 break;
             }
@@ -207,9 +207,9 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
             }
         }
         previous = Some((x, beyond));
-        // Where nodes just touch, rounding decides how many.
+        // Where nodes just touch, rounding decides how many. Of loads as good the last is nearest to where these touch.
         let rank = (carrying < state.contact_nodes, beyond.abs());
-        if nearest.as_ref().is_none_or(|(best, _)| rank < *best) {
+        if nearest.as_ref().is_none_or(|(best, _)| rank <= *best) {
             nearest = Some((rank, solution));
         }
         let nearest_bound = if beyond > 0.0 { high } else { low };

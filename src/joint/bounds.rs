@@ -6,6 +6,9 @@ use crate::kernel::{Layering, Theory};
 use crate::loading::History;
 use crate::{Error, JointError, LoadingState};
 
+/// Loads of the two ends of a chord differ by this part of them at least: those of nodes that touch together by rounding.
+const APART: f64 = 1e-9;
+
 /// Between what the conductance of a rougher surface lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -57,15 +60,21 @@ impl Conduction {
         if let Some(state) = states.iter().find(|state| has_yielded(state)) {
             return Err(JointError::BoundsWithYielding { step: state.step }.into());
         }
-        let points: Vec<(f64, f64)> = states.iter().map(|state| compression(state, body)).collect();
+        // Chords between nodes that touch together are noise.
+        let mut points: Vec<(f64, f64)> = Vec::with_capacity(states.len());
+        for point in states.iter().map(|state| compression(state, body)) {
+            if points.last().is_none_or(|last| last.0 < point.0 * (1.0 - APART)) {
+                points.push(point);
+            }
+        }
         let stiffness = |slope: f64| if slope > 0.0 { 1.0 / slope } else { f64::INFINITY };
-        let bounds = states.iter().enumerate().map(|(k, state)| {
-            let (load, depth) = points[k];
+        let bounds = states.iter().map(|state| {
+            let (load, depth) = compression(state, body);
             // Slopes of chords from an earlier point, and to a later one.
             let before = |i: usize| (depth + apart - points[i].1) / (load - points[i].0);
             let after = |i: usize| (points[i].1 - depth - apart) / (points[i].0 - load);
-            let first = points.partition_point(|point| point.0 < load);
-            let next = points.partition_point(|point| point.0 <= load);
+            let first = points.partition_point(|point| point.0 < load * (1.0 - APART));
+            let next = points.partition_point(|point| point.0 * (1.0 - APART) <= load);
             // There is no earlier point at first touch, and no later one at the end.
             let lower = match first > 0 {
                 true => stiffness(before(best(0..first, before))),
@@ -95,7 +104,8 @@ fn compression(state: &LoadingState, body: Layering) -> (f64, f64) {
     (contact.load, depth)
 }
 
-/// Where a function with one valley is least. Any place is a bound, so that rounding cannot make it wrong.
+/// Where a function with one valley is least. Its values are chords of loads that are [`APART`]: rounding moves them, and
+/// what is found, by 10⁻⁷ at most.
 fn best(places: std::ops::Range<usize>, value: impl Fn(usize) -> f64) -> usize {
     let (mut low, mut high) = (places.start, places.end - 1);
     while low < high {

@@ -4,7 +4,7 @@ use super::conduction::stiffnesses;
 use super::{Carrier, Conduction};
 use crate::kernel::Theory;
 use crate::loading::History;
-use crate::{Error, JointError, LoadingState};
+use crate::{BedError, ContactState, Error, JointError, LoadingState};
 
 /// Below this part of the greatest pressure errors are absolute.
 const SMALL: f64 = 1e-3;
@@ -119,7 +119,7 @@ impl<'a> InterfaceTableBuilder<'a> {
     ///
     /// [`Error::NotPositive`] for tolerance, friction and compliance ratio; [`Error::OutOfRange`] for a tolerance of 1
     /// and more, for a path with fewer than two rows, and for stiffnesses that are negative or NaN;
-    /// [`JointError::NoFunction`] where the mean gap opens so much under a greater load that the law is no function of
+    /// [`BedError::NotFromFirstTouch`]; [`JointError::NoFunction`] where the mean gap opens so much under a greater load that the law is no function of
     /// the overclosure; [`JointError::NoUnloadingStiffness`] if nodes have yielded, and conductances or tangential
     /// stiffnesses are asked for without the stiffness of [`Conduction::of`]; [`Error::NotHomogeneous`] for these on
     /// layers.
@@ -155,7 +155,16 @@ impl<'a> InterfaceTableBuilder<'a> {
     /// The states of the path as rows.
     fn points(&self) -> Result<Points, Error> {
         let states = self.history.states();
-        let unloaded = states.first().map_or(0.0, |state| state.contact.mean_gap);
+        // Overclosures are from first touch on.
+        let mut unloaded = 0.0;
+        if let Some(ContactState { load, approach, mean_gap, .. }) =
+            states.first().map(|state| state.contact)
+        {
+            if load > 0.0 {
+                return Err(BedError::NotFromFirstTouch { load, approach }.into());
+            }
+            unloaded = mean_gap;
+        }
         let mut points = Points::default();
         for state in states {
             if let Some(row) = self.row(state, unloaded)? {

@@ -135,12 +135,13 @@ impl LoadingPath {
             Phase::Factor { updater, log, .. } => {
                 let most = if run.plastic.is_some() { limit } else { most_nodes.min(stop) };
                 let failure = self.exact.produce(run, (updater.as_mut(), log), most)?;
-                if run.queue.is_empty() && run.waiting().is_some() {
-                    // Nothing came before it, and contact that only grows has events up to the last node.
-                    return Err(failure.unwrap_or_else(|| self.exact.growth_stopped(run)));
+                if !run.queue.is_empty() {
+                    self.failure = failure;
+                    return Ok(());
                 }
-                self.failure = failure;
-                Ok(())
+                // Nothing came before it, and contact that only grows has events up to the last node.
+                let stopped = || run.waiting().map(|_| self.exact.growth_stopped(run));
+                failure.or_else(stopped).map_or(Ok(()), Err)
             }
         }
     }

@@ -240,8 +240,10 @@ impl<'a> SlipHistory<'a> {
     /// T to a value at constant load: slip spreads inwards, one piece at a time.
     fn turn(&mut self, force: f64) -> Result<(), Error> {
         let change = force - self.force();
-        let is_held = change == 0.0 || change.abs() <= self.rounding_of_force();
-        if is_held || self.load.load == 0.0 {
+        // Sums at greater loads before have rounding of their own.
+        let borne = self.friction.coefficient() * self.load.load;
+        let rounding = self.rounding_of_force().max(SAME_LOAD * borne);
+        if change.abs() <= rounding || self.load.load == 0.0 {
             return Ok(());
         }
         let top = change.signum() * self.friction.coefficient();

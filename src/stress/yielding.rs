@@ -33,11 +33,12 @@ impl Subsurface {
     ///
     /// Found by interpolation between a load at which nothing yields and one at which something does, where the
     /// greatest stress goes with a power of the load. Should it fall and rise again on the way, it is one of the loads
-    /// at which it passes the yield stress.
+    /// at which it passes the yield stress. Behind the first node that yields at its hardness it falls as well: there it
+    /// is found if it is above the yield stress at the end of the path.
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the yield stress; those of [`Self::survey`] and
+    /// [`Error::NotPositive`] for the yield stress; [`StressError::BehindHardness`]; those of [`Self::survey`] and
     /// [`LoadingPath::fields_at`](LoadingPath::fields_at).
     pub fn first_yield(
         &self,
@@ -101,11 +102,22 @@ fn first_reached(
     if last.contact.load <= 0.0 {
         return Ok(None);
     }
-    let mut above = at(last.contact.load)?;
-    if above.greatest.value < yield_stress {
-        return Ok(None);
-    }
+    let has_yielded = |state: &&LoadingState| {
+        state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0)
+    };
+    let node = history.states().iter().find(has_yielded);
     let mut below: Option<FirstYield> = None;
+    let mut above = at(node.unwrap_or(last).contact.load)?;
+    if above.greatest.value < yield_stress {
+        let Some(node) = node else { return Ok(None) };
+        let reached = above.greatest.value;
+        below = Some(above);
+        above = at(last.contact.load)?;
+        if above.greatest.value < yield_stress {
+            let load = node.contact.load;
+            return Err(StressError::BehindHardness { yield_stress, load, reached }.into());
+        }
+    }
     for _ in 0..TRIALS {
         let over = above.greatest.value / yield_stress;
         if over - 1.0 <= FirstYield::TOLERANCE {

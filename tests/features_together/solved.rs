@@ -1,7 +1,7 @@
 //! States of contact: single loads, sweeps, fields, and the way back.
 
 use asperity::fixed_load::FixedLoadBuilder;
-use asperity::loading::History;
+use asperity::loading::{History, LoadingEnd};
 use asperity::{
     ContactState, ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, LoadingSolver,
     LoadingState,
@@ -179,7 +179,11 @@ pub(super) fn unload(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let mut back = builder.build()?;
     let states = back.by_ref().collect::<Result<History, _>>()?;
     // Full contact, where it ends, may come before.
-    let end = states.at(ContactTarget::Load(last.load))?;
+    let end = match (back.end(), states.states().last()) {
+        // On a stiff layer the last event may be where the other path ended, but for what that was estimated to.
+        (Some(LoadingEnd::NoMoreEvents), Some(end)) => *end,
+        _ => states.at(ContactTarget::Load(last.load))?,
+    };
     let pressure = back.fields_at(&end)?.pressure;
     let gaps = asperity_testing::dense::initial_gap(residual.matrix());
     let dense = Dense::of(pressed.row).elastic(gaps);

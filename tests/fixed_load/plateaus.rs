@@ -6,6 +6,8 @@ use std::path::Path;
 use asperity::io::read_npy;
 use asperity::loading::History;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use nalgebra::DMatrix;
+
 use asperity::{
     Boussinesq, ContactState, ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, Grid,
     InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral, Surface,
@@ -174,6 +176,25 @@ fn sweeps_pass_plateaus() {
             let expected = history.at_load(*load).unwrap().contact;
             assert!((state.approach - expected.approach).abs() < 1e-8 * length, "{load}");
         }
+    }
+}
+
+/// An approach shortly before all nodes of a periodic half-space have yielded, where the load is the greatest but for a
+/// part of 10⁻⁹.
+#[test]
+fn approaches_before_the_last_yield_of_a_periodic_half_space() {
+    let heights =
+        DMatrix::from_fn(2, 8, |ix, iy| if iy == 0 || (ix, iy) == (1, 1) { 1e-6 } else { 0.0 });
+    let surface = HeightMap::new(heights).unwrap();
+    let kernel = PeriodicBoussinesq::new(Grid::new(2, 8, 1e-5, 1e-5).unwrap(), E_STAR).unwrap();
+    let hardness = 6_547_181_113.228_284;
+    let history = path(&surface, &kernel, hardness);
+    let solver = FixedLoadSolver::builder(&surface, &kernel).hardness(hardness);
+    let mut solver = solver.tolerance(1e-12).build().unwrap();
+    for approach in [9.999e-7, 9.999_99e-7, 9.999_999_99e-7] {
+        let expected = history.at_approach(approach).unwrap().contact;
+        let found = solver.solve_target(ContactTarget::Approach(approach)).unwrap().contact;
+        assert!((found.load / expected.load - 1.0).abs() < 1e-8, "{approach:e}");
     }
 }
 

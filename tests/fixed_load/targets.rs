@@ -5,7 +5,10 @@ use std::f64::consts::TAU;
 use asperity::kernel::{KernelTable, MeanDisplacement};
 use asperity::nalgebra::DMatrix;
 use asperity::surface::{HeightMap, Paraboloid};
-use asperity::{ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid, SurfaceError};
+use asperity::{
+    Boussinesq, ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid, LoadingSolver,
+    LoadingState, SurfaceError,
+};
 
 use crate::common::fixed_load::check;
 use crate::problems::{Kernel, solver};
@@ -144,10 +147,17 @@ fn unreachable_areas() {
     let grid = Grid::square(16, 1.0).unwrap();
     let map = HeightMap::sample(&Paraboloid::new(10.0).unwrap(), &grid).unwrap();
     let mut sphere = solver(&map, &Kernel::free(grid, 1.0), 1e-12);
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let path = LoadingSolver::builder(&map, &kernel).max_area_fraction(0.1).build().unwrap();
+    let states: Vec<LoadingState> = path.map(Result::unwrap).collect();
     for (asked, nearest) in [(5, 4), (10, 12), (11, 12)] {
-        let area = ContactTarget::AreaFraction(f64::from(asked) / 256.0);
-        let nodes = sphere.solve_target(area).unwrap().contact.contact_nodes;
-        assert_eq!(nodes, nearest);
+        let area = ContactTarget::AreaFraction(asked as f64 / 256.0);
+        let found = sphere.solve_target(area).unwrap().contact;
+        assert_eq!(found.contact_nodes, nearest);
+        // Where the number jumps the search ends, to its 10⁻¹³.
+        let jump = states.iter().find(|state| state.contact.contact_nodes == asked);
+        let jump = jump.unwrap().contact.load;
+        assert!((found.load / jump - 1.0).abs() < 1e-9, "{asked}: {} {jump}", found.load);
     }
 }
 

@@ -157,6 +157,43 @@ fn bounds_of_a_root_are_those_of_its_best_chords() {
     }
 }
 
+/// On a symmetric surface nodes touch together, four or eight of them: bounds are those of all chords between loads that
+/// differ by more than rounding.
+#[test]
+fn bounds_beside_nodes_that_touch_together_are_those_of_the_best_chords() {
+    let heights = DMatrix::from_fn(12, 12, |ix, iy| {
+        let height = |x: usize, y: usize| libm::sin((7 * x * x + 13 * y + 5 * x * y) as f64);
+        let (a, b) = (ix.min(11 - ix), iy.min(11 - iy));
+        1e-6 * (height(a, b) + height(b, a))
+    });
+    let surface = HeightMap::new(heights).unwrap();
+    let grid = Grid::square(12, 1.2e-4).unwrap();
+    let kernel = PeriodicBoussinesq::new(grid, 1e11).unwrap();
+    let history = history(&surface, &kernel, 1.0);
+    // ρ E* = 2 makes a conductance of a stiffness.
+    let conduction = Conduction::electrical(1e11, 2e-11).unwrap();
+    let points: Vec<(f64, f64)> =
+        history.states().iter().map(|s| (s.contact.load, -s.contact.mean_gap)).collect();
+    for roughness in [0.0, 1e-8] {
+        let bounds = conduction.bounds(&history, roughness).unwrap();
+        for (&(load, depth), bound) in points.iter().zip(&bounds) {
+            let apart = |other: f64| (other - load).abs() > 2e-9 * load.max(other);
+            let chords = |way: f64| {
+                let others = points.iter().filter(move |p| apart(p.0) && way * (p.0 - load) > 0.0);
+                others.map(move |p| (p.1 - depth - roughness) / (p.0 - load))
+            };
+            let (before, after) = (chords(-1.0), chords(1.0));
+            let lower = before.reduce(f64::min).map_or(0.0, f64::recip);
+            let upper = after.reduce(f64::max).filter(|slope| *slope > 0.0);
+            let upper = upper.map_or(f64::INFINITY, f64::recip);
+            // Chords between loads that are 10⁻⁹ apart have seven digits.
+            let near = |a: f64, b: f64| a == b || (a / b - 1.0).abs() < 1e-6;
+            assert!(near(bound.lower, lower), "{load}: {} {lower}", bound.lower);
+            assert!(near(bound.upper, upper), "{load}: {} {upper}", bound.upper);
+        }
+    }
+}
+
 /// A surface, and the same with more roughness: its conductance lies within the bounds of the first, which know nothing
 /// of it but its height.
 #[test]

@@ -5,8 +5,8 @@ use asperity::kernel::Layering;
 use asperity::loading::History;
 use asperity::surface::Paraboloid;
 use asperity::{
-    Boundary, Boussinesq, ContactEvent, Error, FixedLoadSolver, Grid, InfluenceKernel, JointError,
-    LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral, Surface,
+    BedError, Boundary, Boussinesq, ContactEvent, Error, FixedLoadSolver, Grid, InfluenceKernel,
+    JointError, LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral, Surface,
 };
 use asperity_testing::dense::{influence_matrix, restrict};
 use nalgebra::DVector;
@@ -232,6 +232,12 @@ fn what_is_not_known_is_refused() {
     let table = || InterfaceTable::builder(&history);
     assert!(matches!(table().conduction(heat()).build(), Err(Error::Joint(_))));
     assert!(matches!(table().friction(0.2, 1.2).build(), Err(Error::Joint(_))));
+    // Overclosures of states that do not begin with first touch are not known.
+    let later: History = states[20..].iter().copied().collect();
+    assert!(matches!(
+        InterfaceTable::builder(&later).build(),
+        Err(Error::Bed(BedError::NotFromFirstTouch { .. }))
+    ));
     // Pressure and overclosure ask for no stiffness.
     assert!(table().build().unwrap().rows().len() > 10);
     // A state of a longer path, and of more nodes.

@@ -133,3 +133,19 @@ fn windows_of_any_size_hold_all_nodes() {
         assert_eq!([exact.len(), found.len()], [256; 2], "{window}");
     }
 }
+
+/// A flat surface at first touch carries nothing, without a factor too, when some of it has yielded since.
+#[test]
+fn first_touch_of_a_flat_surface_has_no_pressures() {
+    let grid = Grid::new(2, 4, 1e-5, 1e-5).unwrap();
+    let kernel = Boussinesq::new(grid, 1e11).unwrap();
+    let map = DMatrix::from_fn(2, 4, |_, iy| if iy == 0 { 2e8 } else { f64::INFINITY });
+    let flat = HeightMap::new(DMatrix::zeros(2, 4)).unwrap();
+    let builder = LoadingSolver::builder(&flat, &kernel).hardness_map(&map);
+    let mut path = builder.updater(ConjugateGradient::new()).build().unwrap();
+    let states: Vec<LoadingState> = path.by_ref().map(Result::unwrap).collect();
+    for state in states.iter().filter(|state| state.contact.load == 0.0) {
+        let fields = path.fields_at(state).unwrap();
+        assert_eq!(fields.pressure.amax(), 0.0, "{state:?}");
+    }
+}

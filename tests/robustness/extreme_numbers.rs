@@ -1,7 +1,7 @@
 //! Numbers at the ends of the range of double precision: an error or a finite path, never a panic.
 
 use crate::common::with_window;
-use asperity::loading::{History, LoadingSolver};
+use asperity::loading::{History, LoadingEnd, LoadingSolver};
 use asperity::surface::HeightMap;
 use asperity::updater::ConjugateGradient;
 use asperity::{
@@ -331,6 +331,22 @@ fn extreme_loads_and_approaches_are_refused() {
                 }
             }
         }
+    }
+}
+
+/// A hardness beyond all pressures in the units of the input: the error is returned, and the path has not ended by itself.
+#[test]
+fn what_breaks_off_behind_full_contact_is_told() {
+    let grid = Grid::new(5, 6, 1e-5, 1e-5).unwrap();
+    let kernel = Boussinesq::new(grid, 1e11).unwrap();
+    let heights = DMatrix::from_fn(5, 6, |ix, iy| 1e-7 * ((7 * ix + 3 * iy) % 11) as f64);
+    let surface = HeightMap::new(heights).unwrap();
+    for hardness in [1e165, 1e170] {
+        let builder = LoadingSolver::builder(&surface, &kernel).hardness(hardness);
+        let mut path = builder.build().unwrap();
+        let last = path.by_ref().last();
+        assert!(matches!(last, Some(Err(Error::NotFinite { .. }))), "{hardness:e}: {last:?}");
+        assert_eq!(path.end(), Some(LoadingEnd::Failed), "{hardness:e}");
     }
 }
 

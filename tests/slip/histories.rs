@@ -497,3 +497,26 @@ fn a_load_beyond_the_last_by_rounding_is_the_last() {
     let refused = SlipHistory::new(&bed, friction()).to(last * (1.0 + 2e-12), 0.0);
     assert!(matches!(refused, Err(Error::Bed(BedError::PathEndsBefore { .. }))), "{refused:?}");
 }
+
+/// The same loads once more are no turn: what a sum of pieces lacks of the load asked for is rounding, also where greater
+/// loads came before.
+#[test]
+fn a_corner_that_is_held_changes_nothing() {
+    let (_path, history) = path(2);
+    let bed = Bed::new(&history).unwrap();
+    // Anything between 0 and 1.
+    let share = |k: u32| (1e4 * libm::sin(f64::from(k))).rem_euclid(1.0);
+    for k in 0..1000 {
+        let mut joint = SlipHistory::new(&bed, friction());
+        for corner in 0..3 {
+            let [a, b] = [2, 3].map(|prime| share(6 * k + 2 * corner + prime));
+            let load = (0.1 + 0.9 * a) * bed.last_load();
+            let force = (1.2 * b - 0.6) * MU * load;
+            if joint.to(load, force).is_err() {
+                break;
+            }
+            let before = joint.state();
+            assert_eq!(joint.to(load, force).unwrap(), before, "{k}, corner {corner}");
+        }
+    }
+}

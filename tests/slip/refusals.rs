@@ -59,6 +59,31 @@ fn sliding_and_loads_beyond_the_path() {
     }
 }
 
+/// A path that ends in full contact goes on in proportion, unless nodes will yield there.
+#[test]
+fn loads_beyond_full_contact_of_bodies_that_yield() {
+    let grid = Grid::square(12, 1.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let surface = rough(&grid, 3);
+    let history = |hardness: f64| -> History {
+        let builder = LoadingSolver::builder(&surface, &kernel).hardness(hardness);
+        let path = builder.max_area_fraction(1.0).build().unwrap();
+        path.map(Result::unwrap).collect()
+    };
+    let friction = Friction::new(0.3, 1.0).unwrap();
+    let elastic = history(f64::INFINITY);
+    let last = elastic.states().last().unwrap().contact.load;
+    let beyond = |history: &History| {
+        let bed = Bed::new(history).unwrap();
+        PartialSlip::new(&bed, 4.0 * last, friction).map(|slip| slip.sliding_load())
+    };
+    let limit = beyond(&elastic).unwrap();
+    assert!((limit / (1.2 * last) - 1.0).abs() < 1e-12);
+    // Nothing has yielded before.
+    let refused = beyond(&history(100.0 * last));
+    assert!(matches!(refused, Err(Error::Bed(BedError::PathEndsBefore { .. }))), "{refused:?}");
+}
+
 /// A refused step leaves the history as it was.
 #[test]
 fn histories_that_slide() {

@@ -134,3 +134,44 @@ fn there_is_one_yield_stress_for_each_material() -> Result<(), Error> {
     assert!(matches!(negative, Err(Error::NotPositive { .. })), "{negative:?}");
     Ok(())
 }
+
+/// With a hardness the first yield below the surface is that of the elastic path, if it comes before the first node yields.
+/// Behind that it is one of the places at which the stress passes, and where the stress ends below it no answer is certain.
+#[test]
+fn bodies_that_yield_at_the_surface_too() -> Result<(), Error> {
+    let (young, poisson) = STEEL;
+    let e_star = young / (1.0 - poisson * poisson);
+    let half_space = Spectral::new(grid()?, e_star)?;
+    let below = Subsurface::of(&half_space, poisson)?;
+    let (mut path, history) = pressed(&half_space, e_star)?;
+    let strength = 6e8;
+    let elastic = below.first_yield(&mut path, &history, strength)?;
+    let load = elastic.map_or(0.0, |first| first.state.contact.load);
+    let last = history.states().last().map_or(0.0, |state| state.contact.load);
+    let ball = Paraboloid::new(RADIUS)?;
+    let with = |hardness: f64| -> Result<(LoadingSolver, History), Error> {
+        let builder = LoadingSolver::builder(&ball, &half_space).hardness(hardness);
+        let mut path = builder.max_load(last).build()?;
+        let history = path.run()?;
+        Ok((path, history))
+    };
+    let (mut path, history) = with(2e9)?;
+    let first = below.first_yield(&mut path, &history, strength)?;
+    let found = first.map_or(0.0, |first| first.state.contact.load);
+    assert!((found / load - 1.0).abs() < 1e-3, "{found} {load}");
+    // The stress is never much above the hardness.
+    let (mut path, history) = with(6e8)?;
+    let refused = below.first_yield(&mut path, &history, 5.0 * strength);
+    let reached = match refused {
+        Err(Error::Stress(StressError::BehindHardness { reached, .. })) => reached,
+        _ => f64::NAN,
+    };
+    assert!(reached < strength, "{reached}");
+    let passed = below.first_yield(&mut path, &history, 1.001 * reached)?;
+    let passed = passed.map_or(0.0, |first| first.greatest.value);
+    assert!(
+        (passed / (1.001 * reached) - 1.0).abs() < 2.0 * FirstYield::TOLERANCE,
+        "{passed} {reached}"
+    );
+    Ok(())
+}
