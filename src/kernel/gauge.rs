@@ -64,7 +64,10 @@ impl Gauge {
 /// Gauge of a half-space over the least one in which its matrix is an inverse M-matrix: near enough
 /// for windows of events to be long, and far enough for the rounding of the least one, which is a
 /// difference of numbers up to N³ times as large.
-pub(super) const ABOVE_LEAST: f64 = 1.02;
+const ABOVE_LEAST: f64 = 1.02;
+/// Beyond so many times a good one, digits of everything else are lost beside a gauge: a convex promise holds from a
+/// least gauge on, which may be as far above a good one on long cells.
+pub(super) const GREATEST_CONVEX_GAUGE: f64 = 1e3;
 
 /// The gauge in which a half-space is made, in units of D / E*, where D is the long side of a cell
 /// and `grid` has lengths in units of D.
@@ -91,6 +94,14 @@ pub(super) fn least(nodes: usize, inverse: &[f64]) -> Option<f64> {
     let greatest = inverse[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let nodes = nodes as f64;
     (greatest < 0.0).then(|| 1.0 / (nodes * nodes * -greatest))
+}
+
+/// The gauge in which a kernel with this `least` one can promise that gaps are convex, given a `good` one to compute
+/// in; `None` if that would take all digits: where an element of the inverse is zero, rounding says whether there is a
+/// least gauge, and any number of times too great.
+pub(super) fn convex(least: Option<f64>, good: f64) -> Option<f64> {
+    let gauge = least.map(|least| if least > 0.0 { ABOVE_LEAST * least } else { good });
+    gauge.filter(|gauge| *gauge <= GREATEST_CONVEX_GAUGE * good)
 }
 
 /// A gauge for any coefficients, given their mean and the least of them \[m/Pa\].

@@ -28,7 +28,7 @@
 /// A material: shear modulus and Poisson's ratio.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Material {
-    shear: f64,
+    pub(super) shear: f64,
     poisson: f64,
 }
 

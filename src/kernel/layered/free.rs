@@ -118,7 +118,8 @@ pub(super) fn spectrum<G: Fn(f64) -> f64>(body: &LayeredBody, g: G) -> Spectrum<
     }
 }
 
-/// The wave number below which the compliance hardly varies.
+/// The wave number below which the compliance hardly varies. A stiff coat resists waves as a plate from qh = (G₂/G₁)^⅓
+/// on, and as a membrane, which is not to slide on what lies below, from qh = G₂/G₁ on; so does a soft layer give way.
 pub(super) fn first_variation(body: &LayeredBody) -> f64 {
-    0.1 * body.softest_over_stiffest().sqrt() / body.thickness()
+    0.1 * body.softest_over_stiffest() / body.thickness()
 }

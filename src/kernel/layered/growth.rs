@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::body::LayeredBody;
 use crate::Grid;
-use crate::kernel::periodic::Even;
+use crate::kernel::periodic::{Even, inverse, wave_number};
 
 /// Wave numbers to a decade at which the compliance is looked at.
 const PER_DECADE: f64 = 40.0;
@@ -41,11 +41,19 @@ pub(super) fn is_soft(grid: &Grid, body: &LayeredBody) -> bool {
     true
 }
 
+/// Whether the compliance still rises at the shortest wave of a grid, along x or along y.
+pub(super) fn rises_at_the_end(grid: &Grid, body: &LayeredBody) -> bool {
+    let (nx, ny) = grid.shape();
+    [(nx, grid.dx()), (ny, grid.dy())].into_iter().filter(|(n, _)| *n > 1).any(|(n, cell)| {
+        let q = wave_number(n / 2, n, cell);
+        body.compliance(1.01 * q) > body.compliance(q)
+    })
+}
+
 /// The greatest element off the diagonal of the inverse of a periodic kernel, over the one on it, given its symbol; the
 /// uniform wave counts unless its value is zero.
 pub(super) fn greatest_off_diagonal(symbol: &Even) -> f64 {
-    let inverse = symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value });
-    let inverse = inverse.inverse_transform();
+    let inverse = inverse(symbol);
     let others = inverse.values()[1..].iter().copied();
     others.fold(f64::NEG_INFINITY, f64::max) / inverse.values()[0]
 }
@@ -55,7 +63,7 @@ pub(super) fn greatest_off_diagonal(symbol: &Even) -> f64 {
 const OUTWEIGHED: f64 = 0.25;
 
 /// Whether contact grows by the inverse A of a free kernel on nx × ny nodes, given its coefficients at offsets that are
-/// not negative, x fastest.
+/// not negative, x fastest: where positive elements off the diagonal are outweighed.
 ///
 /// With J the nodes out of a contact I, gaps close at the rates w = A_JJ⁻¹ s_J and pressures grow at s_I − A_IJ w,
 /// where s are the row sums of A. Let P be the positive part of A off the diagonal, p its row sums, and p ≤ φ s. Then A
@@ -75,4 +83,14 @@ pub(super) fn inverse_keeps_signs((nx, ny): (usize, usize), coefficients: &[f64]
         let positive: f64 = others.map(|(_, value)| value.max(0.0)).sum();
         positive <= OUTWEIGHED * column.sum()
     })
+}
+
+/// The same of a periodic kernel on nx × ny nodes, given its symbol. All rows are alike, and without a value for the
+/// uniform wave their sum is zero.
+pub(super) fn is_outweighed((nx, ny): (usize, usize), symbol: &Even) -> bool {
+    let inverse = inverse(symbol);
+    let all = (0..ny).flat_map(|j| (0..nx).map(move |i| (i as isize, j as isize)));
+    let positive: f64 = all.skip(1).map(|(i, j)| inverse.at(i, j).max(0.0)).sum();
+    let uniform = symbol.at(0, 0);
+    uniform > 0.0 && positive <= OUTWEIGHED / uniform
 }

@@ -15,4 +15,4 @@ pub(super) use even::Even;
 pub use love::PeriodicBoussinesq;
 pub use semi::SemiPeriodicBoussinesq;
 pub use spectral::Spectral;
-pub(super) use symmetric::{least_gauge, wave_number};
+pub(super) use symmetric::{inverse, least_gauge, wave_number};

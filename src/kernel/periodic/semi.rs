@@ -98,7 +98,8 @@ impl SemiPeriodicBoussinesq {
     ///
     /// # Errors
     ///
-    /// Those of [`PeriodicBoussinesq::new`], and of a grid with too many nodes.
+    /// Those of [`PeriodicBoussinesq::new`], and [`Error::OutOfRange`] if the grid of period P has more than 2³⁰ nodes,
+    /// as many as the greatest [`Grid`] there is: on square cells from some 14 600 nodes along the period on.
     pub fn new(grid: Grid, e_star: f64, along: Axis) -> Result<Self, Error> {
         check_periodic_cells(&grid, PeriodicBoussinesq::MAX_ASPECT, "at most 1000")?;
         let e_star = Error::require_positive("composite modulus", e_star)?;
@@ -111,11 +112,15 @@ impl SemiPeriodicBoussinesq {
             Axis::Y => ((ny, dy), (nx, dx)),
         };
         let (length, width) = (nx as f64 * dx, ny as f64 * dy);
-        let apart = (APART * length / dy).ceil() as usize;
-        let wide = Grid::new(nx, ny.saturating_add(apart), dx, dy)?;
-        let images = love::symbol(&wide)?.inverse_transform();
+        // Across it may have more nodes than a grid can.
+        let wide = ny as f64 + (APART * length / dy).ceil();
+        let most = (Grid::MAX_SIDE * Grid::MAX_SIDE) as f64;
+        let quantity = "nodes along the period times those across, continued by five periods,";
+        let nodes = nx as f64 * wide;
+        Error::require(quantity, nodes, nodes <= most, "at most 2^30")?;
+        let images = love::symbol((nx, wide as usize), (dx, dy))?.inverse_transform();
         let reference = 2.0 * length.hypot(width);
-        let plane = Plane { period: wide.sides().1, reference, cell: dy };
+        let plane = Plane { period: wide * dy, reference, cell: dy };
         let unit = 2.0 * dx * dy / (PI * length);
         let scale = long / e_star;
         let half = nx / 2 + 1;

@@ -114,10 +114,14 @@ macro_rules! half_space {
 }
 pub(super) use half_space;
 
+/// The inverse of a kernel, given its symbol; the uniform wave counts unless its value is zero.
+pub(in crate::kernel) fn inverse(symbol: &Even) -> Even {
+    symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value }).inverse_transform()
+}
+
 /// The least gauge s* in which the kernel's matrix is an inverse M-matrix, if there is any.
 pub(in crate::kernel) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
-    let inverse = symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value });
-    least(grid.nodes(), inverse.inverse_transform().values())
+    least(grid.nodes(), inverse(symbol).values())
 }
 
 /// The grid with lengths in units of the long side of its cells.

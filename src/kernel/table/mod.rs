@@ -7,15 +7,12 @@ mod symbol;
 pub(crate) use coarse::Blocks;
 use symbol::Symbol;
 
-use super::gauge::{ABOVE_LEAST, of_coefficients};
+use super::gauge::{GREATEST_CONVEX_GAUGE, convex, of_coefficients};
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid, KernelError};
 
-/// Beyond so many times a good one, digits of everything else are lost beside a gauge: a convex promise holds from a
-/// least gauge on, which may be as far above a good one on long cells.
-const GREATEST_CONVEX_GAUGE: f64 = 1e3;
-/// The same for other kernels, whose contact is the same in every gauge; and what stands in for a gauge that is
-/// greater, as a multiple of a good one.
+/// As [`GREATEST_CONVEX_GAUGE`] for other kernels, whose contact is the same in every gauge; and what stands in for a
+/// gauge that is greater, as a multiple of a good one.
 const LARGE_GAUGE: f64 = 10.0;
 
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
@@ -167,7 +164,8 @@ impl KernelTable {
     /// table treats it like an arbitrary one, because what is reported of that, an approach without the mean
     /// displacement, is then the approach itself. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies
     /// without a base, where the symbol diverges, the symbol is not evaluated at q = 0, and the kernel gets a gauge
-    /// that is good to compute in.
+    /// that is good to compute in. A promise that gaps are [convex](ContactGrowth::Convex) holds from a least gauge on:
+    /// where there is none, or one that would take all digits, only [`ContactGrowth::Monotone`] is left of it.
     ///
     /// There is no such constructor for a free boundary: a finite number of waves only describes bodies
     /// that repeat, and a symbol sampled on a larger grid gives the displacements of all its images as
@@ -188,17 +186,21 @@ impl KernelTable {
         let symbol = Symbol::new(&grid, mean, symbol)?;
         let period = symbol.coefficients();
         let (nx, ny) = (grid.nx() as isize, grid.ny() as isize);
-        let table = Self::from_fn(grid, Boundary::Periodic, growth, |di, dj| {
+        let mut table = Self::from_fn(grid, Boundary::Periodic, growth, |di, dj| {
             period[(di.rem_euclid(nx) + nx * dj.rem_euclid(ny)) as usize]
         })?
         .with_mean_displacement(symbol.mean);
         let Some(gauge) = table.computing_gauge() else {
             return Ok(table);
         };
-        // The promise holds from the least gauge on.
-        let is_convex = growth == ContactGrowth::Convex;
-        let least = if is_convex { symbol.least_gauge() } else { None };
-        Ok(table.in_gauge(least.map_or(gauge, |least| ABOVE_LEAST * least)))
+        if growth == ContactGrowth::Convex {
+            // The promise holds from the least gauge on.
+            if let Some(gauge) = convex(symbol.least_gauge(), gauge) {
+                return Ok(table.in_gauge(gauge));
+            }
+            table.growth = ContactGrowth::Monotone;
+        }
+        Ok(table.in_gauge(gauge))
     }
 
     /// The same coefficients, with the mean displacement of a periodic body taken as said.

@@ -43,7 +43,7 @@ impl Symbol {
     pub(super) fn least_gauge(&self) -> Option<f64> {
         let reciprocal = |value: &f64| if *value == 0.0 { 0.0 } else { 1.0 / value };
         let inverse: Vec<f64> = self.values.iter().map(reciprocal).collect();
-        least(inverse.len(), &transformed(self.shape, &inverse)).filter(|least| *least > 0.0)
+        least(inverse.len(), &transformed(self.shape, &inverse))
     }
 }
 

@@ -288,6 +288,23 @@ fn a_convex_promise_holds_in_the_gauge_of_its_table() -> Result<(), Error> {
     Ok(())
 }
 
+/// On strips of an even number of nodes the inverse of 1/q is zero at even distances, and negative by rounding at best:
+/// the gauge is that of any other promise, and no gauge of 10¹³ times the coefficients.
+#[test]
+fn a_convex_promise_without_a_gauge_is_monotone() -> Result<(), Error> {
+    for n in [4, 118, 178, 206, 746] {
+        let grid = Grid::new(1, n, 1.0, 1.0)?;
+        let made = |growth: ContactGrowth| {
+            let symbol = |qx: f64, qy: f64| 2.0 / qx.hypot(qy);
+            KernelTable::from_symbol(grid, MeanDisplacement::Arbitrary, growth, symbol)
+        };
+        let (found, expected) = (made(ContactGrowth::Convex)?, made(ContactGrowth::Unknown)?);
+        assert_eq!(found.growth, ContactGrowth::Monotone, "{n}");
+        assert_eq!(found.values, expected.values, "{n}");
+    }
+    Ok(())
+}
+
 /// An inverse Fourier transform rounds small coefficients as it does the greatest.
 #[test]
 fn coefficients_may_be_off_by_rounding_of_the_greatest() -> Result<(), Error> {

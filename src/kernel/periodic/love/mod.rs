@@ -122,7 +122,7 @@ impl PeriodicBoussinesq {
     pub fn new(grid: Grid, e_star: f64) -> Result<Self, Error> {
         check_periodic_cells(&grid, Self::MAX_ASPECT, "at most 1000")?;
         let cells = in_long_sides(&grid)?;
-        let symbol = symbol(&cells)?;
+        let symbol = symbol(cells.shape(), (cells.dx(), cells.dy()))?;
         let gauge = of_half_space(&cells, least_gauge(&cells, &symbol));
         Ok(Self { half_space: Symmetric::new(grid, e_star, &symbol, gauge)? })
     }
@@ -143,9 +143,8 @@ half_space! {
 }
 
 /// The symbol for E* = 1 on cells whose long side is 1.
-pub(super) fn symbol(cells: &Grid) -> Result<Even, Error> {
-    let (nx, ny) = cells.shape();
-    let short_range = ShortRange::new(cells.dx(), cells.dy())?;
+pub(super) fn symbol((nx, ny): (usize, usize), (dx, dy): (f64, f64)) -> Result<Even, Error> {
+    let short_range = ShortRange::new(dx, dy)?;
     // The sum over the rows b of S, for each wave along x and each row.
     let rows = short_range.rows();
     let (series_x, series_y) = (CosineSeries::new(nx), CosineSeries::new(ny));
@@ -160,8 +159,8 @@ pub(super) fn symbol(cells: &Grid) -> Result<Even, Error> {
             return 0.0;
         }
         let sums = &along_x[kx * rows..][..rows];
-        let qx = wave_number(kx, nx, cells.dx());
-        let qy = wave_number(ky, ny, cells.dy());
+        let qx = wave_number(kx, nx, dx);
+        let qy = wave_number(ky, ny, dy);
         let q = libm::hypot(qx, qy);
         let long_range = 2.0 / q
             * libm::erfc(q / (2.0 * ALPHA))

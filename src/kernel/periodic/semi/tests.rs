@@ -89,6 +89,30 @@ fn with_a_long_period_it_is_free() -> Result<(), Error> {
     Ok(())
 }
 
+/// Cells across that are short beside the period: five periods are more nodes than a grid can have.
+#[test]
+fn long_periods_of_short_cells() -> Result<(), Error> {
+    let e_star = 1e11;
+    let kernel = SemiPeriodicBoussinesq::new(Grid::new(700, 1, 1e-5, 1e-6)?, e_star, Axis::X)?;
+    let love = Boussinesq::new(kernel.grid(), e_star)?;
+    let sum = |di: isize| {
+        let images = (1..=300).rev().map(|k| 700 * k);
+        let far = images.map(|at| love.coefficient(di + at, 0) + love.coefficient(di - at, 0));
+        far.sum::<f64>() + love.coefficient(di, 0)
+    };
+    let own = kernel.coefficient(0, 0);
+    for di in [1, 7, 350] {
+        let found = own - kernel.coefficient(di, 0);
+        // 2 A/(π E* k L) x²/(k L)² of both neighbours beyond, with Σ k⁻³ = 1/(2 × 300.5²).
+        let x = di as f64 / 700.0;
+        let beyond = 2.0 * 1e-11 / (PI * e_star * 7e-3) * x * x / (2.0 * 300.5 * 300.5);
+        let error = (found - (sum(0) - sum(di) - beyond)).abs() / own;
+        // Roundings of 600 terms.
+        assert!(error < 2e-14, "{di}: {error:e}");
+    }
+    Ok(())
+}
+
 /// Waves along the period do not feel the images across of the periodic kernel, beyond exp(−2π × 6) = 4 × 10⁻¹⁷ of
 /// them.
 #[test]
@@ -168,6 +192,9 @@ fn bad_half_spaces_are_refused() -> Result<(), Error> {
         let made = SemiPeriodicBoussinesq::new(grid, bad, Axis::X);
         assert!(matches!(made, Err(Error::NotPositive { .. })), "{made:?}");
     }
+    // 32768 × (1 + 5 × 32768) nodes.
+    let wide = SemiPeriodicBoussinesq::new(Grid::new(1, 32768, 1.0, 1.0)?, 1.0, Axis::Y);
+    assert!(matches!(wide, Err(Error::OutOfRange { value, .. }) if value > 5e9), "{wide:?}");
     let long = Grid::new(4, 4, 1e4, 1.0)?;
     for along in [Axis::X, Axis::Y] {
         let made = SemiPeriodicBoussinesq::new(long, 1.0, along);

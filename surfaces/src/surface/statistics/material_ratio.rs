@@ -54,9 +54,12 @@ impl MaterialRatio {
         Self { heights }
     }
 
-    /// The part of the surface at or above a height \[m\]: Smr(c), or Rmr(c) of a profile.
+    /// The part of the surface at or above a height \[m\]: Smr(c), or Rmr(c) of a profile. NaN above NaN.
     #[must_use]
     pub fn at_height(&self, height: f64) -> f64 {
+        if height.is_nan() {
+            return height;
+        }
         let above = self.heights.partition_point(|other| *other >= height);
         above as f64 / self.heights.len() as f64
     }
