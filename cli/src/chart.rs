@@ -137,7 +137,7 @@ impl Chart {
         text_rise: f64,
     ) -> Drawn<DB> {
         let (left, top, right, bottom) = MARGINS;
-        let panel = Panel {
+        let mut panel = Panel {
             left: FINE * (at.0 + left),
             top: FINE * (at.1 + top),
             width: FINE * (SIZE.0 - left - right),
@@ -146,6 +146,10 @@ impl Chart {
             stroke: FINE as u32,
             text_rise,
         };
+        // Long numbers at the axis need more room.
+        let more = (panel.space_left(&self.y) - FINE * left).max(0);
+        panel.left += more;
+        panel.width -= more;
         let middle = (panel.left + panel.width / 2, FINE * (at.1 + top / 2));
         let centred = anchor(HPos::Center, VPos::Center);
         panel.write(area, &self.title, middle, FINE * (FONT + 1), centred)?;

@@ -10,15 +10,13 @@ use plotters::style::text_anchor::{HPos, VPos};
 use crate::axis::Axis;
 use crate::contour::contour;
 use crate::outcome::Failure;
-use crate::panel::{Area, Drawn, Panel, anchor, shade};
+use crate::panel::{Area, Drawn, Panel, anchor, shade, text_width};
 use crate::picture;
 
 /// Pixels along the longer side of the map, about.
 const SIDE: f64 = 860.0;
 /// Pixels a side of the map has at least.
 const SHORTEST: i32 = 60;
-/// Pixels along x that the caption needs.
-const CAPTION: i32 = 640;
 const FONT: i32 = 20;
 const MARGIN: Margin = Margin { left: 130, right: 200, top: 80, bottom: 100 };
 /// Values below the range.
@@ -91,11 +89,16 @@ impl FieldMap<'_> {
         axes: [(&str, f64); 2],
     ) -> Result<PathBuf, Failure> {
         let (width, height) = map_size(self.grid);
-        let inner = (CAPTION - MARGIN.left - MARGIN.right).max(width);
-        let size = (inner + MARGIN.left + MARGIN.right, height + MARGIN.top + MARGIN.bottom);
+        let colours = self.colours();
+        // Maps of profiles are narrower than what is written above them, or lower than the scale.
+        let written = text_width(caption, FONT + 2) + 2 * FONT;
+        let inner_width = width.max(written - MARGIN.left - MARGIN.right);
+        let inner_height = height.max(scale_height(&colours));
+        let size =
+            (inner_width + MARGIN.left + MARGIN.right, inner_height + MARGIN.top + MARGIN.bottom);
         let panel = Panel {
-            left: MARGIN.left + (inner - width) / 2,
-            top: MARGIN.top,
+            left: MARGIN.left + (inner_width - width) / 2,
+            top: MARGIN.top + (inner_height - height) / 2,
             width,
             height,
             font: FONT,
@@ -104,35 +107,38 @@ impl FieldMap<'_> {
         };
         picture::draw(name, size, |area| {
             // The middle of the picture is further right than that of the map.
-            let free = (size.0 - CAPTION) / 2;
-            let middle = (panel.left + panel.width / 2).min(CAPTION / 2 + free);
-            let middle = (middle, MARGIN.top / 2);
+            let middle = panel.left + panel.width / 2;
+            let middle = middle.max(written / 2).min(size.0 - written / 2);
             let centred = anchor(HPos::Center, VPos::Center);
-            panel.write(area, caption, middle, FONT + 2, centred)?;
-            self.draw(area, &panel, axes)?;
+            panel.write(area, caption, (middle, MARGIN.top / 2), FONT + 2, centred)?;
+            self.draw(area, &panel, &colours, axes)?;
             area.present()
         })
+    }
+
+    /// The axis of the colours.
+    fn colours(&self) -> Axis {
+        let ((least, greatest), (label, unit)) = (self.range, self.label);
+        match self.scale {
+            Scale::Linear | Scale::Relief => Axis::linear(label, unit, least, greatest),
+            Scale::Logarithmic => Axis::logarithmic(label, unit, least, greatest),
+        }
     }
 
     fn draw<DB: DrawingBackend>(
         &self,
         area: &Area<DB>,
         panel: &Panel,
+        colours: &Axis,
         [x, y]: [(&str, f64); 2],
     ) -> Drawn<DB> {
-        let (least, greatest) = self.range;
-        let (label, unit) = self.label;
-        let colours = match self.scale {
-            Scale::Linear | Scale::Relief => Axis::linear(label, unit, least, greatest),
-            Scale::Logarithmic => Axis::logarithmic(label, unit, least, greatest),
-        };
         for (place, value) in (0_i32..).zip(self.pixels(panel)) {
             let Some(value) = value else { continue };
             let at = (
                 panel.left + place % panel.width,
                 panel.top + panel.height - 1 - place / panel.width,
             );
-            area.draw_pixel(at, &self.colour(&colours, value))?;
+            area.draw_pixel(at, &self.colour(colours, value))?;
         }
         let (lx, ly) = self.grid.sides();
         // One unit for both axes, that of the longer side.
@@ -142,12 +148,20 @@ impl FieldMap<'_> {
             let axis = Axis::linear(name, self.length_unit, from, from + longer);
             axis.with_room(0.0, -excess)
         });
-        self.lines(area, panel, (&x, &y), &colours)?;
+        self.lines(area, panel, (&x, &y), colours)?;
         panel.frame(area, &x, &y)?;
-        if greatest > least {
-            self.colour_bar(area, panel, &colours)?;
+        let higher = ((scale_height(colours) - panel.height) / 2).max(0);
+        let bar = Panel {
+            left: panel.left + panel.width + 28,
+            top: panel.top - higher,
+            width: 26,
+            height: panel.height + 2 * higher,
+            ..*panel
+        };
+        if self.range.1 > self.range.0 {
+            self.colour_bar(area, &bar, colours)?;
         }
-        Ok(())
+        self.marks(area, &bar)
     }
 
     /// The contours, dark on light colours and light on dark ones.
@@ -206,16 +220,20 @@ impl FieldMap<'_> {
     fn colour_bar<DB: DrawingBackend>(
         &self,
         area: &Area<DB>,
-        panel: &Panel,
+        bar: &Panel,
         colours: &Axis,
     ) -> Drawn<DB> {
-        let bar = Panel { left: panel.left + panel.width + 28, width: 26, ..*panel };
         bar.colour_bar(area, colours, |share| self.shade(share))?;
         let across = Axis::plain("", 0.0, 1.0);
         for &level in self.contours {
             let ends = [(0.0, level), (1.0, level)].into_iter();
             bar.curve(area, (&across, colours), ends, self.ink_on(colours.place(level)))?;
         }
+        Ok(())
+    }
+
+    /// Beside the ends of the bar, what has no place on it.
+    fn marks<DB: DrawingBackend>(&self, area: &Area<DB>, bar: &Panel) -> Drawn<DB> {
         let has = |mark: f64| self.values.iter().any(|value| *value == mark);
         let marks: [(&str, RGBColor, bool); 2] = [
             ("below 0", BELOW, self.values.iter().any(|value| self.is_below(*value))),
@@ -275,6 +293,11 @@ impl FieldMap<'_> {
             Scale::Linear | Scale::Logarithmic => shade(share),
         }
     }
+}
+
+/// Pixels that a scale has at least: as many as its label, which runs upwards.
+fn scale_height(colours: &Axis) -> i32 {
+    text_width(colours.label(), FONT * 9 / 8)
 }
 
 /// Pixels of the map: whole ones for each node if there are enough, in the proportions of the

@@ -197,7 +197,7 @@ impl Outcome {
     }
 
     /// Keeps the names of files, or the failure to write them.
-    pub fn all_written(&mut self, result: Result<Vec<PathBuf>, Failure>) {
+    pub fn all_written(&mut self, result: Result<impl IntoIterator<Item = PathBuf>, Failure>) {
         match result {
             Ok(files) => self.files.extend(files),
             Err(failure) => self.failures.push(failure),

@@ -141,7 +141,6 @@ impl Panel {
     /// Ticks and label of an axis along the left edge.
     pub fn frame_left<DB: DrawingBackend>(&self, area: &Area<DB>, y: &Axis) -> Drawn<DB> {
         let ink = INK.stroke_width(self.stroke);
-        let mut widest = 0;
         for tick in y.ticks(self.room()[1]) {
             let (_, at) = rounded(self.pixel(0.0, tick.place));
             let length = self.tick(tick.label.is_some());
@@ -150,11 +149,22 @@ impl Panel {
             if let Some(label) = tick.label {
                 let pos = anchor(HPos::Right, VPos::Center);
                 self.write(area, &label, (self.left - self.font / 2, at), self.font, pos)?;
-                widest = widest.max(label_width(&label, self.font));
             }
         }
-        let at = (self.left - widest - self.font * 5 / 4, self.top + self.height / 2);
+        let at = (self.left - self.beside(y), self.top + self.height / 2);
         upwards(area, y.label(), at, self.font * 9 / 8)
+    }
+
+    /// Pixels between the left edge and the label of its axis.
+    fn beside(&self, y: &Axis) -> i32 {
+        let labels = y.ticks(self.room()[1]).into_iter().filter_map(|tick| tick.label);
+        let widest = labels.map(|label| text_width(&label, self.font)).max().unwrap_or(0);
+        widest + self.font * 5 / 4
+    }
+
+    /// Pixels that an axis along the left edge takes, with its label.
+    pub(crate) fn space_left(&self, y: &Axis) -> i32 {
+        self.beside(y) + self.font * 3 / 2
     }
 
     /// All shades as a bar, with an axis along its right edge.
@@ -187,7 +197,7 @@ impl Panel {
             if let Some(label) = tick.label {
                 let pos = anchor(HPos::Left, VPos::Center);
                 self.write(area, &label, (right + self.font * 3 / 4, at), self.font, pos)?;
-                widest = widest.max(label_width(&label, self.font));
+                widest = widest.max(text_width(&label, self.font));
             }
         }
         let size = self.font * 9 / 8;
@@ -262,9 +272,9 @@ fn upwards<DB: DrawingBackend>(
     area.draw(&Text::new(text.to_string(), at, style))
 }
 
-/// Width of a label in pixels.
-fn label_width(label: &str, size: i32) -> i32 {
-    (FONT, size).into_font().box_size(label).map_or(0, |(width, _)| width as i32)
+/// Width of a text in pixels.
+pub(crate) fn text_width(text: &str, size: i32) -> i32 {
+    (FONT, size).into_font().box_size(text).map_or(0, |(width, _)| width as i32)
 }
 
 fn rounded((x, y): (f64, f64)) -> (i32, i32) {

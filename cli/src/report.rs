@@ -7,6 +7,7 @@ use asperity::LoadingPath;
 use asperity::record::LoadingRecord;
 use asperity_cli::note;
 use asperity_cli::outcome::{self, Failure, Outcome};
+use asperity_cli::units::{self, Units};
 use asperity_report::{Report, Source};
 use clap::Args;
 
@@ -47,7 +48,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(folder) = options.with.iter().find(|folder| !folder.is_dir()) {
         return Err(Failure::request(format!("there is no folder {}", folder.display())));
     }
-    let mut report = Report::new().made_by(shell::command());
+    let mut report = empty();
     let mut folders = options.with.iter();
     for file in &options.records {
         let name = file.display().to_string();
@@ -66,6 +67,15 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outcome.finish()
 }
 
+/// A page of this command without a path, in the units that it was asked for.
+fn empty() -> Report {
+    let report = Report::new().made_by(shell::command());
+    match units::chosen() {
+        Units::Si => report,
+        Units::Millimetres => report.in_millimetres(),
+    }
+}
+
 /// The page of a path that has just been followed, with the tables that were written since it began.
 pub(crate) fn of_path(
     name: &str,
@@ -74,7 +84,7 @@ pub(crate) fn of_path(
     (folder, since): (&Path, SystemTime),
 ) -> Result<PathBuf, Failure> {
     let file = folder.join("report.html");
-    let mut report = Report::new().made_by(shell::command());
+    let mut report = empty();
     let source = Source::new(name, record).computed_by(fields).with_folder_since(folder, since);
     report.add(source).map_err(|error| Failure::new("cannot make the report", error))?;
     outcome::write(&file, report.html())

@@ -79,7 +79,7 @@ fn shown(units: Units, si_unit: &str, greatest: f64) -> (f64, String) {
             let (unit, name) = area_unit(greatest);
             (unit, name.to_string())
         }
-        _ if is_power_of_length(si_unit) => (1.0, si_unit.to_string()),
+        _ if is_power_of_length(si_unit) || si_unit == "cells" => (1.0, si_unit.to_string()),
         _ => prefixed(si_unit, greatest),
     }
 }
@@ -99,6 +99,7 @@ mod tests {
             ("m³/s", 1e-12, (1.0, "m³/s"), (1e-9, "mm³/s")),
             ("N/m", 3e9, (1e9, "GN/m"), (1e3, "N/mm")),
             ("Hz", 3e3, (1e3, "kHz"), (1e3, "kHz")),
+            ("cells", 3e3, (1.0, "cells"), (1.0, "cells")),
         ] {
             for (units, expected) in [(Units::Si, prefixed), (Units::Millimetres, plain)] {
                 let (unit, name) = shown(units, si, greatest);

@@ -149,22 +149,23 @@ impl Dimension {
         format!("{} ({})", self.name, units.join(", "))
     }
 
-    /// A unit in SI units, `None` if it is none. Case decides between two, as mN and MN.
+    /// A unit in SI units, `None` if it is none. Case decides between two, as mN and MN, and M is never milli.
     fn factor(&self, unit: &str) -> Option<f64> {
         if unit.is_empty() {
             return Some(1.0);
         }
         if self.name == LENGTH.name {
-            let found = unit.parse().or_else(|_| unit.to_lowercase().parse());
-            return found.ok().map(LengthUnit::metres);
+            let any_case = || unit.to_lowercase().parse().ok().filter(|_| unit != "Mm");
+            return unit.parse().ok().or_else(any_case).map(LengthUnit::metres);
         }
         let unit = plain(unit);
+        let is_mega = |name: &str| unit.starts_with('M') && name.starts_with('m');
         let found = |is: &dyn Fn(&str) -> bool| {
             let mut found = self.units.iter().filter(|(name, _)| is(name));
             found.next().filter(|_| found.next().is_none())
         };
         found(&|name| name == unit)
-            .or_else(|| found(&|name| name.eq_ignore_ascii_case(&unit)))
+            .or_else(|| found(&|name| name.eq_ignore_ascii_case(&unit) && !is_mega(name)))
             .map(|(_, factor)| *factor)
     }
 }
@@ -346,13 +347,21 @@ mod tests {
     /// What is no number, no unit of this kind, or not decided by its case.
     #[test]
     fn other_units_are_refused() {
-        let refused: [(&'static Dimension, &[&str]); 3] = [
+        let refused: [(&'static Dimension, &[&str]); 8] = [
             (
                 &PRESSURE,
-                &["", "MPa", "5mm", "5mpa", "5 Pa s", "0Pa", "-1MPa", "nan", "infPa", "1e999"],
+                &[
+                    "", "MPa", "1Mbar", "5mm", "5mpa", "5 Pa s", "0Pa", "-1MPa", "nan", "infPa",
+                    "1e999",
+                ],
             ),
-            (&LENGTH, &["5MPa", "1A/m", "1,5mm", "--1", "1e-3e", "µm"]),
+            (&LENGTH, &["5MPa", "1A/m", "1,5mm", "--1", "1e-3e", "µm", "24 Mm"]),
             (&FORCE, &["5mn", "5Pa"]),
+            (&TIME, &["1Ms"]),
+            (&SURFACE_ENERGY, &["1 MJ/m2", "1MN/m"]),
+            (&VISCOSITY, &["1 MPa s"]),
+            (&CONDUCTIVITY, &["1MW/(m K)"]),
+            (&AREA, &["1Mm2"]),
         ];
         for (dimension, texts) in refused {
             for text in texts {

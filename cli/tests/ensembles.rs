@@ -96,6 +96,18 @@ fn many_paths_are_told_in_one_table() -> Done {
     assert_eq!(said(&done).matches("half-space free").count(), 1, "{}", said(&done));
     let gathered = String::from_utf8(output(&folder.0, "gather runs")?.stdout)?;
     assert!(gathered.contains("means of 3 paths at common loads"), "{gathered}");
+    let last = || -> Result<String, Box<dyn Error>> {
+        let table = fs::read_to_string(folder.join("runs/gather.csv"))?;
+        Ok(table.lines().last().unwrap_or_default().to_string())
+    };
+    let sixty = last()?;
+    // The last common load is one, however many there are before it.
+    for loads in ["2", "10", "20", "61", "80"] {
+        let done = output(&folder.0, &format!("gather runs --loads {loads}"))?;
+        assert!(done.status.success());
+        assert_eq!(last()?, sixty, "{loads}");
+    }
+    assert!(output(&folder.0, "gather runs")?.status.success());
     let table = fs::read_to_string(folder.join("runs/gather.csv"))?;
     let last: Vec<f64> = table
         .lines()

@@ -98,6 +98,21 @@ fn a_path_without_load_is_told() -> Result<(), Box<dyn Error>> {
     let said = String::from_utf8(asperity(&folder, &["patches", name])?.stdout)?;
     assert!(said.contains("no node has touched under load"), "{said}");
     assert!(said.contains(r"--resume 'it'\''s one.npz' --record 'it'\''s one.npz'"), "{said}");
+    assert!(said.contains("1 patch; the largest has 1 node, "), "{said}");
+    assert!(said.contains("carries nothing yet") && said.contains("the widest channel"), "{said}");
+    Ok(())
+}
+
+/// A load behind the only event: the patch that carries it is described, though no node has touched under load.
+#[test]
+fn a_load_on_the_first_node_is_described() -> Result<(), Box<dyn Error>> {
+    let folder = folder("patches_one")?;
+    let path = ["path", "--nodes", "16", "--max-load", "1uN", "--record", "one.npz"];
+    assert!(asperity(&folder, &path)?.status.success());
+    let said = String::from_utf8(asperity(&folder, &["patches", "one.npz"])?.stdout)?;
+    assert!(said.contains("no loads of activation to draw"), "{said}");
+    assert!(said.contains("carries 1 µN (100.00 %)"), "{said}");
+    assert!(folder.join("out/distributions.png").is_file());
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use std::fs;
 use asperity::io::read_npy;
 use asperity_testing::report;
 use common::{Scratch, answer, asperity, column, is_refused, numbers, said};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 fn run(folder: &Scratch, line: &str) -> std::process::Output {
     let words: Vec<&OsStr> = line.split(' ').map(OsStr::new).collect();
@@ -66,7 +66,10 @@ fn a_path_and_its_record_have_one_page() {
     assert_eq!(page["records"][0]["facts"], live["facts"]);
     assert_eq!(files(&page["records"][0]), ["unloading.csv"]);
     done(&folder, "report out/path.npz --with out --out page.html");
-    assert!(files(&data(&folder, "page.html")["records"][0]).contains(&"leak.csv".to_string()));
+    let page = data(&folder, "page.html");
+    assert!(page["units"].is_null());
+    assert!(files(&page["records"][0]).contains(&"leak.csv".to_string()));
+    assert_eq!(page["records"][0]["panels"][0]["folder"], "out");
 
     done(&folder, "path --nodes 24 --record other.npz --out other");
     done(&folder, "report out/path.npz other.npz --out two.html");
@@ -74,6 +77,20 @@ fn a_path_and_its_record_have_one_page() {
     let names: Vec<_> =
         two["records"].as_array().unwrap().iter().map(|record| record["name"].clone()).collect();
     assert_eq!(names, ["out/path.npz", "other.npz"]);
+
+    // Tables of a folder of two records are there once, and `--units` is what the page begins with.
+    fs::rename(folder.join("other.npz"), folder.join("out/other.npz")).unwrap();
+    for table in ["unloading.csv", "leak.csv"] {
+        let file = fs::File::options().write(true).open(folder.join("out").join(table)).unwrap();
+        file.set_modified(std::time::SystemTime::now()).unwrap();
+    }
+    done(&folder, "report out/path.npz out/other.npz --units mm-N-MPa --out two.html");
+    let two = data(&folder, "two.html");
+    assert_eq!(two["units"], json!({"length": "mm", "force": "N", "pressure": "MPa"}));
+    let [path, other] = [0, 1].map(|number| &two["records"][number]);
+    assert_eq!(files(path), ["unloading.csv", "leak.csv"]);
+    assert!(path["panels"].as_array().unwrap().iter().all(|panel| panel["both"] == true));
+    assert!(files(other).is_empty());
 }
 
 /// The value of a fact, which has this unit.

@@ -46,7 +46,7 @@ fn bodies(task: &Task) {
     let terms: Vec<String> = terms.collect();
     let left = match task.prony.equilibrium_modulus() {
         0.0 => "nothing is left in the end: the bodies flow".to_string(),
-        left => format!("{:.4} of it is left in the end", left),
+        left => format!("{} of it is left in the end", significant(left, 4)),
     };
     match terms.len() {
         0 => say!("bodies     elastic: no part of the modulus relaxes"),

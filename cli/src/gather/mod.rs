@@ -67,7 +67,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let steps = options.loads - 1;
     let ratio = (last / first).powf(1.0 / steps as f64);
-    let loads = (0..=steps).map(|k| (first * ratio.powi(k as i32)).min(last));
+    // The last one exactly: the path that ends there has it with its last event.
+    let loads = (0..steps).map(|k| (first * ratio.powi(k as i32)).min(last)).chain([last]);
     let rows: Vec<Row> = loads.map(|load| Row::at(load, &tables)).collect();
     print(&rows, tables.len());
     if options.json {

@@ -12,7 +12,7 @@ use asperity::io::MeasuredSurface;
 use asperity::surface::{
     self, ArealParameters, Estimate, HeightMap, ProfileParameters, Topography, Trend, Window,
 };
-use asperity_cli::number::{counted, quantity};
+use asperity_cli::number::{counted, quantity, significant};
 use asperity_cli::outcome::{self, Failure, Outcome, of_program};
 use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
@@ -81,7 +81,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     outcome.written(picture::map(&whole, directory));
-    outcome.written(picture::statistics(&whole, directory));
+    outcome.all_written(picture::statistics(&whole, directory));
     outcome.finish()
 }
 
@@ -192,7 +192,7 @@ fn print(
     };
     say!("roughness     {}", roughness(map));
     if let Some(gradient) = whole.rms_gradient() {
-        say!("rms gradient  {:.4}", gradient.abs());
+        say!("rms gradient  {}", significant(gradient.abs(), 4));
     }
     let failed = |error| Failure::new("cannot remove the tilt", error);
     let levelled = whole.surface.level(Trend::Plane).map_err(failed)?;
@@ -242,7 +242,10 @@ fn print_texture(texture: &ArealParameters) {
         _ => "no autocorrelation length".to_string(),
     };
     let core = texture.core;
-    say!("texture       Sdr {:.3} %, {ways}, without the tilt (ISO 25178)", 100.0 * texture.sdr);
+    say!(
+        "texture       Sdr {} %, {ways}, without the tilt (ISO 25178)",
+        significant(100.0 * texture.sdr, 4)
+    );
     say!(
         "              core Sk {}, peaks Spk {}, dales Svk {}; Smrk1 {:.1} %, Smrk2 {:.1} %",
         length(core.sk),

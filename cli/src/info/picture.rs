@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use asperity::patches::{Bins, Histogram};
-use asperity::surface::{RadialBins, Topography, Trend, Window};
+use asperity::surface::{self, RadialBins, Topography, Trend, Window};
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, Series, Style};
 use asperity_cli::field_map::{FieldMap, Scale};
@@ -37,23 +37,27 @@ pub(super) fn map(whole: &Whole, directory: &Path) -> Result<PathBuf, Failure> {
     )
 }
 
-/// The distribution of heights, and the power spectrum of the surface without its tilt.
-pub(super) fn statistics(whole: &Whole, directory: &Path) -> Result<PathBuf, Failure> {
+/// The distribution of heights, and the power spectrum of the surface without its tilt; nothing of heights that are all the
+/// same.
+pub(super) fn statistics(whole: &Whole, directory: &Path) -> Result<Option<PathBuf>, Failure> {
     let levelled = whole.surface.level(Trend::Plane).ok();
     let levelled = levelled.filter(|_| whole.has_size);
     let charts = [distribution(whole), levelled.as_ref().and_then(spectrum)];
     let charts: Vec<Chart> = charts.into_iter().flatten().collect();
     let columns = charts.len();
     if charts.is_empty() {
-        return Err(Failure::request("a flat surface has no statistics to draw"));
+        return Ok(None);
     }
-    chart::draw(&charts, columns, &directory.join("surface_statistics.png"))
+    chart::draw(&charts, columns, &directory.join("surface_statistics.png")).map(Some)
 }
 
 /// The distribution of heights beside the normal one of the same Sq; `None` of heights that are all the same.
 fn distribution(whole: &Whole) -> Option<Chart> {
     let map = whole.surface.map();
     let (mean, sq) = (map.mean_height(), map.rms_height());
+    if map.peak_to_valley() == 0.0 {
+        return None;
+    }
     let heights = map.matrix().iter().map(|height| height - mean);
     let histogram = Histogram::new(heights, Bins::Linear(BINS)).ok()?;
     let middles = histogram.edges().windows(2);
@@ -84,10 +88,15 @@ fn distribution(whole: &Whole) -> Option<Chart> {
     })
 }
 
-/// The radial power spectrum, `None` without two waves to draw.
+/// The power spectrum, of a map the radial one, `None` without two waves to draw.
 fn spectrum(levelled: &Topography) -> Option<Chart> {
     let windowed = levelled.window(Window::Hann).ok()?;
-    let bins = windowed.radial_psd(&RadialBins::PerDecade(20)).ok()?;
+    // That of a profile does not depend on how wide its cells are said to be.
+    let (name, unit, bins) = match windowed.grid().shape() {
+        (_, 1) => ("power spectrum", "m³", windowed.psd_along(surface::Axis::X)),
+        (1, _) => ("power spectrum", "m³", windowed.psd_along(surface::Axis::Y)),
+        _ => ("radial power spectrum", "m⁴", windowed.radial_psd(&RadialBins::PerDecade(20)).ok()?),
+    };
     let points = bins.iter().map(|bin| (bin.wavevector, bin.density));
     let points: Vec<(f64, f64)> = points.filter(|(q, c)| *q > 0.0 && *c > 0.0).collect();
     let ends = |values: &dyn Fn(&(f64, f64)) -> f64| {
@@ -98,9 +107,9 @@ fn spectrum(levelled: &Topography) -> Option<Chart> {
     let (first, last) = ends(&|(q, _)| *q)?;
     let (least, greatest) = ends(&|(_, c)| *c)?;
     Some(Chart {
-        title: "radial power spectrum (tilt removed, Hann window)".to_string(),
+        title: format!("{name} (tilt removed, Hann window)"),
         x: Axis::logarithmic("wavevector q = 2π/λ", "rad/m", first, last),
-        y: Axis::logarithmic("C", "m⁴", least, greatest).with_room(0.04, 0.06),
+        y: Axis::logarithmic("C", unit, least, greatest).with_room(0.04, 0.06),
         series: vec![Series::new("", BLUE, Style::Line, points)],
         legend: Corner::TopRight,
     })

@@ -39,7 +39,7 @@ pub(super) fn draw(
         range: (0.0, drop),
         scale: Scale::Linear,
         contours: &lines,
-        label: ("fluid pressure", "Pa"),
+        label: ("fluid pressure above the outlet", "Pa"),
     };
     let mut files =
         vec![pressure.write(&directory.join(format!("fluid_pressure_{place}.png")), &caption)?];

@@ -136,10 +136,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         words::print_curve(&curve, &work.record, &work.seal);
         pressures.extend(curve.points.iter().map(|point| point.state.contact.mean_pressure()));
         outcome.written(table::write(&curve, &out.join("leak.csv")));
-        match charts::draw(&curve, &out.join("leak.png")) {
-            Ok(drawn) => drawn.into_iter().for_each(|name| outcome.written(Ok(name))),
-            Err(failure) => outcome.note(Err(failure)),
-        }
+        outcome.all_written(charts::draw(&curve, &out.join("leak.png")));
         if options.load.is_empty() {
             drawn.extend(work.half_closed(&curve));
         }

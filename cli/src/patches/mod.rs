@@ -108,21 +108,21 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let object = object::of(&record, followed.as_ref().ok(), moment);
         answer!("{}", object.map_err(|error| Failure::new("cannot find the channels", error))?);
     }
-    if !carries {
-        if options.json {
-            outcome.note(moment.map(drop));
-        }
-        say!("no node has touched under load: there is nothing to draw");
-        return outcome.finish();
+    if carries {
+        outcome.written(activation::draw(&record, &out.join("activation.png")));
+    } else {
+        say!("no node has touched under load: no loads of activation to draw");
     }
-    outcome.written(activation::draw(&record, &out.join("activation.png")));
     match moment {
         Ok(moment) => {
             words::print_moment(&moment);
             let channels = words::print_channels(&record, &moment);
             outcome.note(channels.map_err(|error| Failure::new("cannot find the channels", error)));
-            let name = out.join("distributions.png");
-            outcome.written(distributions::draw(&record, &moment, &name));
+            // First touch has no pressures.
+            if moment.state.contact.load > 0.0 {
+                let name = out.join("distributions.png");
+                outcome.written(distributions::draw(&record, &moment, &name));
+            }
         }
         Err(failure) => outcome.note(Err(failure)),
     }

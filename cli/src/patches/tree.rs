@@ -117,7 +117,7 @@ impl Tree<'_> {
             let pos = anchor(HPos::Right, VPos::Center);
             panel.write(area, text, at, panel.font - FINE, pos)?;
         }
-        let lasting = branches.iter().filter(|branch| branch.merger.is_none()).count();
+        let lasting = self.leaves.iter().filter(|leaf| leaf.into.is_none()).count();
         let title = format!(
             "The {count} largest of {}: each from its first node until it merges into an older one, or to the end ({lasting}, orange)",
             counted(branches.len(), "patch")

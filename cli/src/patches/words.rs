@@ -122,15 +122,21 @@ pub(super) fn print_moment(moment: &Moment) {
         return;
     };
     let percent = |part: f64, whole: f64| 100.0 * part / whole;
+    let carries = match state.contact.load {
+        0.0 => "carries nothing yet".to_string(),
+        load => format!(
+            "carries {} ({:.2} %) at a mean pressure of {}",
+            quantity(carried.load, "N", 4),
+            percent(carried.load, load),
+            quantity(carried.mean_pressure, "Pa", 4)
+        ),
+    };
     say!(
-        "{}; the largest has {}, {}, {:.2} % of the contact, and carries {} ({:.2} %) at a mean pressure of {}",
+        "{}; the largest has {}, {}, {:.2} % of the contact, and {carries}",
         counted(moment.patches.len(), "patch"),
         counted(patch.nodes, "node"),
         area(patch.area, 4),
-        percent(patch.area, state.contact.contact_area),
-        quantity(carried.load, "N", 4),
-        percent(carried.load, state.contact.load),
-        quantity(carried.mean_pressure, "Pa", 4)
+        percent(patch.area, state.contact.contact_area)
     );
 }
 

@@ -31,7 +31,7 @@ use crate::reading::Reading;
 use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::note;
-use asperity_cli::number::{counted, quantity};
+use asperity_cli::number::{counted, quantity, significant};
 use asperity_cli::outcome::{Failure, is_same};
 
 /// Contact area over nominal area at which a path ends if nobody says where.
@@ -465,9 +465,9 @@ impl fmt::Display for Job {
         )?;
         writeln!(
             f,
-            "roughness  rms height Sq {}, rms gradient {:.4}",
+            "roughness  rms height Sq {}, rms gradient {}",
             quantity(self.heights().rms_height(), "m", 5),
-            self.rms_gradient.abs()
+            significant(self.rms_gradient.abs(), 4)
         )?;
         writeln!(f, "bodies     {}", self.bodies)?;
         if self.hardness.is_some() {

@@ -129,8 +129,9 @@ fn stiffness(joint: &Joint) -> Option<Chart> {
 }
 
 fn loss_factor(joint: &Joint) -> Option<Chart> {
-    let (first, last) = (joint.cycles.first()?, joint.cycles.last()?);
-    let y = Axis::plain_logarithmic("D/(π T U)", first.loss_factor, last.loss_factor);
+    let factors = || joint.cycles.iter().map(|cycle| cycle.loss_factor);
+    let (least, most) = (factors().reduce(f64::min)?, factors().reduce(f64::max)?);
+    let y = Axis::plain_logarithmic("D/(π T U)", least, most);
     Some(Chart {
         title: "loss factor of a cycle".to_string(),
         x: amplitudes(joint)?,

@@ -34,7 +34,8 @@ fn of_body(body: &Body) -> Chart {
         title: format!("greatest stresses in the {}", body.name),
         x: Axis::linear("depth", "m", 0.0, if deepest > 0.0 { deepest } else { 1.0 }),
         y: Axis::linear("stress", "Pa", 0.0, 1.08 * greatest),
-        series: series.into(),
+        // Where all is pressed there is no tension.
+        series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
         legend: Corner::TopRight,
     }
 }
