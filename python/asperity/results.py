@@ -427,7 +427,7 @@ class Leak(_WithArrays):
     constriction : CriticalConstriction or None
         The narrowest place of the widest channel.
     pressure : ndarray of float, [row, column]
-        Fluid pressure [Pa], NaN where there is no fluid and in pools.
+        Fluid pressure above the outlet [Pa], NaN where there is no fluid and in pools.
     flux_x, flux_y : ndarray of float, [row, column]
         Volume per time and width [m²/s].
     sections : ndarray of float

@@ -9,7 +9,6 @@ use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use crate::argument::one_of;
 use crate::errors::{Failure, Fallible, Number, Numbers};
@@ -94,12 +93,10 @@ impl<'py> Found<'py> {
         Ok(Self { array, shape, ..self })
     }
 
-    /// The numbers as they are, in C order.
+    /// The numbers as they are, in C order, each at a place in memory that is one for numbers.
     fn in_order(&self, dtype: &str) -> PyResult<Bound<'py, PyAny>> {
-        let py = self.array.py();
-        let options = PyDict::new(py);
-        options.set_item("dtype", dtype)?;
-        py.import("numpy")?.call_method("ascontiguousarray", (&self.array,), Some(&options))
+        let options = (&self.array, dtype, ["C", "ALIGNED"]);
+        self.array.py().import("numpy")?.call_method1("require", options)
     }
 
     /// The field of these numbers.

@@ -27,9 +27,11 @@ fn conduction(
     e_star: Option<f64>,
     gap: Option<(f64, f64)>,
 ) -> Fallible<Conduction> {
-    let e_star = e_star
-        .or_else(|| increments.e_star(py))
-        .ok_or_else(|| Failure::arguments("a History does not know its modulus: give e_star"))?;
+    let e_star = e_star.or_else(|| increments.e_star(py)).ok_or_else(|| {
+        Failure::arguments(
+            "a path on a body of your own, or a History, does not know its modulus: give e_star",
+        )
+    })?;
     let made = match choose("carrier", carrier, &CARRIERS)? {
         Carrier::Heat => Conduction::thermal(e_star, resistivity)?,
         Carrier::Current => Conduction::electrical(e_star, resistivity)?,

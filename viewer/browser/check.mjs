@@ -1,6 +1,6 @@
 // The page of a path, as its readers use it: `node check.mjs CHROMIUM FOLDER [PICTURES]`, on what `.ci/browser` has made there.
 import assert from "node:assert/strict";
-import { mkdirSync, readFileSync, statSync } from "node:fs";
+import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -27,6 +27,16 @@ async function open(file, options = {}) {
   await page.goto(pathToFileURL(path.join(folder, file)).href);
   page.quiet = () => assert.deepEqual(said, [], file);
   return page;
+}
+
+/** A page with other data, made of one that is there. */
+function changed(file, name, change) {
+  const text = readFileSync(path.join(folder, file), "utf8");
+  const from = text.indexOf('id="data">') + 10, to = text.indexOf("</script>", from);
+  const data = JSON.parse(text.slice(from, to));
+  change(data);
+  const json = JSON.stringify(data).replaceAll("<", "\\u003c");
+  writeFileSync(path.join(folder, name), text.slice(0, from) + json + text.slice(to));
 }
 
 const shown = (page) => page.waitForFunction(() => window.viewer !== undefined);
@@ -234,6 +244,22 @@ await step("the keyboard alone reaches everything", async () => {
   assert.equal(await at(), csv.load.length - 1);
   assert.match(await full.getAttribute("#slider", "aria-valuetext"), /65536 nodes in contact/);
   await full.waitForFunction(() => document.getElementById("said").textContent.includes("65536 nodes in contact"));
+  // They are keys of the page, but for a choice that has the keyboard.
+  await full.focus("#along");
+  await full.keyboard.press("Home");
+  assert.equal(await at(), csv.load.length - 1);
+  await full.evaluate(() => document.activeElement.blur());
+  await full.keyboard.press("PageDown");
+  assert.equal(await at(), csv.load.length - 1 - Math.round(csv.load.length / 100));
+  await full.keyboard.press("PageUp");
+  assert.equal(await at(), csv.load.length - 1);
+  await full.keyboard.press("ArrowDown");
+  assert.equal(await at(), csv.load.length - 1);
+  await full.keyboard.press("Home");
+  assert.equal(await at(), 0);
+  await full.keyboard.press("End");
+  assert.equal(await at(), csv.load.length - 1);
+  await full.focus("#slider");
   await full.keyboard.press("Home");
   await full.keyboard.press(" ");
   await full.waitForFunction(() => viewer.event > 100);
@@ -336,9 +362,32 @@ await step("dark mode", async () => {
   await dark.evaluate(() => viewer.goTo(9000));
   assert.ok((await colours(dark))["84,93,105"] > 20000);
   await picture(dark, "dark.png");
+  // High is light and a wide gap is dark, as the words say, in both themes.
+  const ends = () => dark.evaluate(() => {
+    const [view] = viewer.maps, { path } = view;
+    const open = [...path.touched.keys()].filter((node) => path.touched[node] < 0);
+    const grey = (ground, node) => {
+      view.ground.value = ground;
+      view.recolour();
+      return view.pixels[(node % path.nx) + path.nx * (path.ny - 1 - Math.floor(node / path.nx))] & 255;
+    };
+    const greysOf = (ground, of) => {
+      const sorted = open.toSorted((a, b) => of[b] - of[a]);
+      return [sorted[0], sorted.at(-1)].map((node) => grey(ground, node));
+    };
+    const greys = { heights: greysOf("heights", path.heights), gap: greysOf("gap", view.state().codes) };
+    grey("plain", 0);
+    return greys;
+  });
+  const agree = ({ heights: [highest, lowest], gap: [widest, least] }) => {
+    assert.ok(highest > lowest + 30, `heights: ${highest} and ${lowest}`);
+    assert.ok(widest < least - 30, `gap: ${widest} and ${least}`);
+  };
+  agree(await ends());
   await dark.selectOption("#theme", "light");
   assert.equal(await paper(dark), "rgb(255, 255, 255)");
   assert.ok((await colours(dark))["233,236,241"] > 20000);
+  agree(await ends());
   dark.quiet();
 });
 
@@ -451,6 +500,100 @@ await step("a loop is drawn as it was run, and a leak down to where it ends", as
   places.slice(1).forEach((place, i) => assert.equal(Math.sign(place - places[i]), Math.sign(loop.displacement[i + 1] - loop.displacement[i])));
   await picture(beside, "beside.png");
   beside.quiet();
+});
+
+await step("time is logarithmic for creep that begins at zero, and a table of even steps is not", async () => {
+  const times = [0, ...Array.from({ length: 41 }, (_, i) => 10 ** (i / 10 - 2))];
+  const even = Array.from({ length: 301 }, (_, i) => i * 1e-9);
+  const table = (short, log, along, values, chart) => {
+    const columns = [{ name: along, values }, { name: chart, values: values.map((_, i) => 1 + i) }];
+    return { title: short, short, file: `${short}.csv`, log, along, charts: [chart], lines: values.length, columns };
+  };
+  changed("beside.html", "creep.html", ({ records: [record] }) => {
+    const slip = table("Slip", false, "displacement", even, "slip_area");
+    record.panels = [table("Creep", true, "time", times, "load"), slip];
+  });
+  const creep = await open("creep.html");
+  await shown(creep);
+  const [[time, first], [displacement]] = await creep.evaluate(() => {
+    return viewer.panels.map(({ charts: [{ x, data }] }) => [x.log, data[0][0] * x.in.factor]);
+  });
+  assert.ok(time && !displacement);
+  near(first, 0.01, "the first time on the axis");
+  creep.quiet();
+});
+
+await step("a table tells where it lies, and of two records which one it is of", async () => {
+  const told = (page) => {
+    const words = (all) => all.map((one) => ["h2", ".note"].map((part) => one.querySelector(part).textContent));
+    return page.$$eval("#panels .panel", words);
+  };
+  const beside = await open("beside.html");
+  await shown(beside);
+  assert.deepEqual((await told(beside))[1], ["Leak", "4 lines of leak.csv, in beside"]);
+  const leak = await beside.evaluate(() => viewer.path.record.panels.find(({ file }) => file === "leak.csv"));
+  changed("two.html", "tables.html", ({ records: [a, b] }) => {
+    a.panels = [{ ...leak, folder: "<b>one</b>" }, { ...leak, folder: null, both: true }];
+    b.panels = [{ ...leak, folder: null }];
+  });
+  const two = await open("tables.html");
+  await shown(two);
+  assert.deepEqual(await told(two), [
+    ["A: Leak", "4 lines of leak.csv, in <b>one</b>"],
+    ["Leak", "4 lines of leak.csv, beside both records"],
+    ["B: Leak", "4 lines of leak.csv, beside the record"],
+  ]);
+  const { titles, colours, records } = await two.evaluate(() => {
+    const charts = viewer.panels.map(({ charts: [chart] }) => chart);
+    const colours = charts.map(({ lines: [{ colour }] }) => colour);
+    return { titles: charts.map(({ title }) => title), colours, records: [0, 1].map(lineColour) };
+  });
+  assert.deepEqual(titles, ["A Leak: leak rate", "Leak: leak rate", "B Leak: leak rate"]);
+  assert.deepEqual([colours[0], colours[2]], records);
+  assert.ok(!records.includes(colours[1]), colours[1]);
+  await picture(two, "tables.png");
+  two.quiet();
+});
+
+await step("the page begins in the units that were asked for", async () => {
+  changed("steel.html", "millimetres.html", (data) => (data.units = { length: "mm", force: "N", pressure: "MPa" }));
+  const page = await open("millimetres.html");
+  await shown(page);
+  for (const [kind, unit] of [["length", "mm"], ["force", "N"], ["pressure", "MPa"], ["area", "%"]]) {
+    assert.equal(await page.inputValue(`#unit-${kind}`), unit);
+  }
+  const words = (all) => all.map(({ children: [name, value] }) => [name.textContent, value.textContent]);
+  const reads = Object.fromEntries(await page.$$eval(".readout div", words));
+  const lengths = { "mean gap": "mm", "plastic volume": "mm³" }, forces = { load: "N", "mean pressure": "MPa" };
+  for (const [name, unit] of Object.entries({ ...lengths, ...forces, "contact stiffness K": "N/mm" })) {
+    assert.ok(reads[name].endsWith(` ${unit}`), `${name}: ${reads[name]}`);
+  }
+  // Cubic millimetres are no thousandths of cubic metres.
+  const volume = await page.evaluate(() => viewer.path.columns.plastic_volume.at(-1));
+  near(Number(reads["plastic volume"].replace(/ mm³$/, "")), volume * 1e9, "plastic volume in mm³");
+  assert.match(await page.textContent("#subtitle"), / N and /);
+  await page.selectOption("#unit-force", "kN");
+  assert.equal(await page.inputValue("#unit-force"), "kN");
+  page.quiet();
+});
+
+await step("settings are written in full, and lists of lists are told apart", async () => {
+  const settings = {
+    "surface.seed": 123456789,
+    bodies: [[2.1e11, 0.3], [7e10, 0.33]],
+    "layers.base": [2.1e11, 0.3],
+    "grid.nodes": [32, 20],
+    "grid.sides": [3.2e-3, 4e-3],
+  };
+  changed("steel.html", "settings.html", ({ records: [record] }) => (record.settings = settings));
+  const page = await open("settings.html");
+  await shown(page);
+  const rows = await page.$$eval(".settings tr", (all) => all.map((one) => one.lastElementChild.textContent));
+  const bodies = "[210000000000, 0.3000], [70000000000, 0.3300]";
+  assert.deepEqual(rows, ["123456789", bodies, "210000000000, 0.3000", "32 × 20", "0.003200 × 0.004000"]);
+  const facts = await page.$$eval(".facts tr", (all) => all.map((one) => one.textContent));
+  assert.ok(facts.includes("sides10.00 mm × 10.00 mm"), facts);
+  page.quiet();
 });
 
 await step("a profile can be seen and saved", async () => {

@@ -24,9 +24,11 @@ const isDark = () => {
   return asked ? asked === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 };
 
-const themed = () => (isDark() ? { out: rgba(84, 93, 105), newest: rgba(255, 255, 255), grey: [70, 200] } : { out: rgba(233, 236, 241), newest: rgba(0, 0, 0), grey: [252, 150] });
+const DARK = { out: rgba(84, 93, 105), newest: rgba(255, 255, 255), grey: [150, 50] };
+const LIGHT = { out: rgba(233, 236, 241), newest: rgba(0, 0, 0), grey: [252, 150] };
+const themed = () => (isDark() ? DARK : LIGHT);
 
-/** Greys for what is out of contact. */
+/** Greys for what is out of contact, from light to dark in every theme, as the words beside the map say. */
 const greys = (levels) => {
   const [from, to] = themed().grey;
   return Uint32Array.from({ length: levels + 1 }, (_, i) => {

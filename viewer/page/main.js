@@ -144,7 +144,9 @@ class Viewer {
     });
     byId("charts").replaceChildren(...this.charts.map(({ figure }) => figure));
     this.charts.forEach((chart) => chart.draw());
-    this.panels = paths.flatMap((path) => path.record.panels.map((found) => ({ ...panel(found), path })));
+    this.panels = paths.flatMap((path, i) => {
+      return path.record.panels.map((found) => ({ ...panel(found, several ? i : null), path }));
+    });
     const tables = paths.map((path, lead) => stateTable(path, (event) => this.goTo(event, lead)));
     byId("panels").replaceChildren(...this.panels.map(({ section }) => section));
     byId("tables").replaceChildren(...tables);
@@ -191,6 +193,7 @@ class Viewer {
     for (const [kind, units] of Object.entries(CHOICES)) {
       const select = byId(`unit-${kind}`);
       select.append(...units.map((unit) => option([unit, unit])));
+      select.value = chosen[kind];
       select.onchange = () => {
         chosen[kind] = select.value;
         this.remake();
@@ -239,8 +242,8 @@ class Viewer {
       const next = event.key === "]" ? events.find((place) => place > this.event) : events.findLast((place) => place < this.event);
       if (next !== undefined) this.goTo(next);
     } else if (event.key in steps && (target.id === "slider" || !own)) {
-      // Up and down scroll the page unless the slider has the keyboard.
-      if (target.id !== "slider" && !event.key.match(/Left|Right/)) return;
+      // Arrows up and down scroll the page unless the slider has the keyboard.
+      if (target.id !== "slider" && event.key.match(/Arrow(Up|Down)/)) return;
       this.stop();
       this.goTo(this.event + steps[event.key]);
     } else return;
@@ -276,6 +279,8 @@ class Viewer {
 async function showPaths(data) {
   demand(data.format === 1, "The data of this file are not those of this page.");
   demand(Array.isArray(data.records) && data.records.length > 0, "There is no record in this file.");
+  // Once there is a page, its reader chooses.
+  if (!window.viewer) Object.assign(chosen, data.units);
   const paths = [];
   for (const record of data.records) paths.push(await ContactPath.of(record));
   const names = data.records.map(({ name }) => name);

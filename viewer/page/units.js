@@ -34,9 +34,12 @@ function unitFor(unit, greatest, nominal) {
     const area = chosen.area === "auto" ? ["m²", "mm²", "µm²"].find((name) => greatest * nominal >= FACTORS[name]) ?? "µm²" : chosen.area;
     return { name: area, factor: FACTORS[area] / nominal };
   }
+  if (unit === "") return { name: unit, factor: 1 };
+  const [, power, rest] = unit.match(/^m([²³])(.*)/) ?? [];
+  if (!power) return prefixed(unit, greatest);
   // A prefix would be raised to the power of its metre.
-  if (unit === "" || unit === "m²" || unit === "m³" || unit.startsWith("m³/")) return { name: unit, factor: 1 };
-  return prefixed(unit, greatest);
+  const length = chosen.length === "auto" ? "m" : chosen.length;
+  return { name: length + power + rest, factor: FACTORS[length] ** (power === "²" ? 2 : 3) };
 }
 
 const SUPERSCRIPTS = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };

@@ -6,14 +6,19 @@ function plain(value) {
   return String(Number.isInteger(value) ? value : +value.toPrecision(5));
 }
 
+/** Facts that are one number along x and one along y. */
+const ALONG_X_AND_Y = /^(sides|cells|grid\..*)$/;
+
 /** Facts as rows. */
 function factRows(facts) {
-  return facts.map(({ name, value, unit }) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, factText(value, unit))));
+  const text = ({ name, value, unit }) => factText(value, unit, ALONG_X_AND_Y.test(name) ? " × " : ", ");
+  return facts.map((fact) => make("tr", {}, make("th", { scope: "row" }, fact.name), make("td", {}, text(fact))));
 }
 
-function factText(value, unit) {
-  if (Array.isArray(value)) return value.map((one) => factText(one, unit)).join(" × ");
-  if (Number.isInteger(value) && unit === "" && Math.abs(value) < 1e6) return String(value);
+function factText(value, unit, between = ", ") {
+  const part = (one) => (Array.isArray(one) ? `[${factText(one, unit)}]` : factText(one, unit));
+  if (Array.isArray(value)) return value.map(part).join(between);
+  if (Number.isSafeInteger(value) && unit === "") return String(value);
   if (typeof value === "number") return unit === "1" ? `${digits(100 * value)} %` : unit ? quantity(value, unit) : digits(value);
   return typeof value === "string" ? value : JSON.stringify(value);
 }
@@ -86,11 +91,22 @@ const COLUMN_UNITS = [
 ];
 const unitOfColumn = (name) => COLUMN_UNITS.find(([pattern]) => pattern.test(name))?.[1] ?? "";
 
-/** What another command has computed of the record: its charts. */
-function panel(found) {
+/** Whether a logarithmic axis suits values: zeros, which it leaves out, do not count. */
+function isSteep(values) {
+  const positive = values.filter((value) => value > 0);
+  return !values.some((value) => value < 0) && Math.max(...positive) > 200 * Math.min(...positive);
+}
+
+/** What another command has computed of a record: its charts. `number` is that of the record, null if there is one. */
+function panel(found, number) {
+  const letter = number === null || found.both ? "" : "AB"[number];
+  const colour = found.both ? ink("--soft") : lineColour(number ?? 0);
+  const where = found.folder ? `in ${found.folder}` : `beside ${found.both ? "both records" : "the record"}`;
   const columns = found.columns.map(({ name, values }) => ({ name, values: values.map((value) => value ?? NaN) }));
   const along = columns.find(({ name }) => name === found.along);
-  const section = make("section", { class: "panel" }, make("h2", {}, found.title), make("p", { class: "note" }, `${found.lines} lines of ${found.file}, beside the record`));
+  const title = make("h2", {}, letter ? `${letter}: ${found.title}` : found.title);
+  const note = make("p", { class: "note" }, `${found.lines} lines of ${found.file}, ${where}`);
+  const section = make("section", { class: "panel" }, title, note);
   const charts = found.charts
     .map((name) => columns.find((column) => column.name === name))
     .filter((column) => column && column.values.some(Number.isFinite))
@@ -99,16 +115,14 @@ function panel(found) {
       const known = along.values.map((_, i) => i).filter((i) => Number.isFinite(along.values[i]));
       const x = known.map((i) => along.values[i]), y = known.map((i) => column.values[i]);
       const rows = x.map((_, i) => i), places = rows.slice().sort((a, b) => x[a] - x[b]);
-      const positive = x.every((value) => value > 0) && Math.max(...x) > 200 * Math.min(...x);
       const at = (value) => x.reduce((best, one, i) => (Math.abs(one - value) < Math.abs(x[best] - value) ? i : best), 0);
-      const line = { label: "", colour: lineColour(0), dash: 0, x, y, at, places };
+      const line = { label: "", colour, dash: 0, x, y, at, places };
       // A loop has several values at one place.
       const isLoop = x.some((value, i) => value > x[i - 1]) && x.some((value, i) => value < x[i - 1]);
       if (isLoop) Object.assign(line, { rows, at: null });
-      // Zeros are left out: of a seal that closes the rest is steep.
-      const steep = y.filter((value) => value > 0);
-      const log = !y.some((value) => value < 0) && Math.max(...steep) > 200 * Math.min(...steep);
-      return new Chart(`${found.short}: ${words(column.name)}`, { words: words(along.name), unit: unitOfColumn(along.name), log: positive }, { words: words(column.name), unit: unitOfColumn(column.name), log }, [line]);
+      const axis = ({ name }, log) => ({ words: words(name), unit: unitOfColumn(name), log });
+      const title = `${letter} ${found.short}: ${words(column.name)}`.trim();
+      return new Chart(title, axis(along, found.log && isSteep(x)), axis(column, isSteep(y)), [line]);
     });
   section.append(make("div", { class: "charts" }, ...charts.map(({ figure }) => figure)));
   return { section, charts, along: along.name };

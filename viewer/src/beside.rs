@@ -6,12 +6,14 @@ use std::time::SystemTime;
 
 use serde_json::{Map, Value, json};
 
-/// A table that a page can show: its file, what it is, its column along x, and those that are drawn.
+/// A table that a page can show: its file, what it is, its column along x, whether pictures of its command are over the
+/// logarithm of that, and the columns that are drawn.
 struct Kind {
     file: &'static str,
     title: &'static str,
     short: &'static str,
     along: &'static str,
+    log: bool,
     charts: &'static [&'static str],
 }
 
@@ -21,6 +23,7 @@ const KINDS: [Kind; 7] = [
         title: "Unloading from the last state",
         short: "Unloading",
         along: "approach",
+        log: false,
         charts: &["load", "contact_area_fraction", "mean_gap"],
     },
     Kind {
@@ -28,6 +31,7 @@ const KINDS: [Kind; 7] = [
         title: "Slip under a tangential load",
         short: "Slip",
         along: "displacement",
+        log: false,
         charts: &["tangential_load", "slip_area", "tangential_stiffness"],
     },
     Kind {
@@ -35,6 +39,7 @@ const KINDS: [Kind; 7] = [
         title: "Cycles of the tangential load",
         short: "Cycles",
         along: "amplitude",
+        log: true,
         charts: &["dissipation", "loss_factor"],
     },
     Kind {
@@ -42,6 +47,7 @@ const KINDS: [Kind; 7] = [
         title: "Creep",
         short: "Creep",
         along: "time",
+        log: true,
         charts: &["contact_area_fraction", "mean_gap", "load", "approach"],
     },
     Kind {
@@ -49,6 +55,7 @@ const KINDS: [Kind; 7] = [
         title: "Steady cycles of the load",
         short: "Creep, cycles",
         along: "frequency",
+        log: true,
         charts: &["dissipation", "loss_factor"],
     },
     Kind {
@@ -56,6 +63,7 @@ const KINDS: [Kind; 7] = [
         title: "Leak",
         short: "Leak",
         along: "load",
+        log: false,
         charts: &["leak_rate", "permeability", "constriction_gap"],
     },
     Kind {
@@ -63,6 +71,7 @@ const KINDS: [Kind; 7] = [
         title: "History of the tangential load",
         short: "History",
         along: "displacement",
+        log: false,
         charts: &["tangential_load"],
     },
 ];
@@ -72,31 +81,42 @@ const LINES: usize = 400;
 /// Bytes of a file that is read.
 const BYTES: u64 = 100_000_000;
 
+/// A folder of tables.
+pub(crate) struct Folder {
+    pub(crate) path: PathBuf,
+    /// Tables that are older are left out.
+    pub(crate) since: Option<SystemTime>,
+    /// Whether the page tells its path, and not that its tables lie beside the record.
+    pub(crate) is_named: bool,
+}
+
 /// What was found in a folder.
 #[derive(Default)]
 pub(crate) struct Beside {
-    pub(crate) panels: Vec<Value>,
+    /// Tables, by their files.
+    pub(crate) panels: Vec<(PathBuf, Value)>,
     pub(crate) settings: Option<Value>,
     /// What was left out, and why.
     pub(crate) notes: Vec<String>,
 }
 
-/// Whether two names are of one folder that is there.
+/// Whether two names are of one folder, or of one file, that is there.
 pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
     one.canonicalize().ok().zip(other.canonicalize().ok()).is_some_and(|(one, other)| one == other)
 }
 
-/// The files of a folder that are of a record: those that are not older. Without a record all.
-pub(crate) fn of(folder: &Path, record: Option<SystemTime>) -> Beside {
+/// The tables of a folder, and its settings.
+pub(crate) fn of(folder: &Folder) -> Beside {
     let mut beside = Beside::default();
+    let name = folder.is_named.then(|| folder.path.display().to_string());
     for kind in KINDS {
-        let file = folder.join(kind.file);
+        let file = folder.path.join(kind.file);
         let Ok(about) = fs::metadata(&file) else { continue };
         if !about.is_file() {
             continue;
         }
-        if let (Some(record), Ok(written)) = (record, about.modified())
-            && written < record
+        if let (Some(since), Ok(written)) = (folder.since, about.modified())
+            && written < since
         {
             beside.notes.push(format!("{} is left out: it is older than the record", kind.file));
             continue;
@@ -109,20 +129,25 @@ pub(crate) fn of(folder: &Path, record: Option<SystemTime>) -> Beside {
             .map_err(|error| error.to_string())
             .and_then(|text| table(&text, &kind))
         {
-            Ok((columns, lines)) => beside.panels.push(json!({
-                "title": kind.title,
-                "short": kind.short,
-                "file": kind.file,
-                "along": kind.along,
-                "charts": kind.charts,
-                "lines": lines,
-                "columns": columns,
-            })),
+            Ok((columns, lines)) => {
+                let panel = json!({
+                    "title": kind.title,
+                    "short": kind.short,
+                    "file": kind.file,
+                    "folder": name,
+                    "along": kind.along,
+                    "log": kind.log,
+                    "charts": kind.charts,
+                    "lines": lines,
+                    "columns": columns,
+                });
+                beside.panels.push((file, panel));
+            }
             Err(why) => beside.notes.push(format!("{} is left out: {why}", kind.file)),
         }
     }
     // Whatever determines the path; a record does not know the name of its surface.
-    let settings = fs::read_to_string(folder.join("settings.json")).ok();
+    let settings = fs::read_to_string(folder.path.join("settings.json")).ok();
     beside.settings = settings.and_then(|text| serde_json::from_str(&text).ok());
     beside
 }
@@ -167,7 +192,10 @@ fn rounded(value: f64) -> f64 {
 pub(crate) fn flat(settings: &Value) -> Map<String, Value> {
     fn add(name: &str, value: &Value, into: &mut Map<String, Value>) {
         let Value::Object(group) = value else {
-            into.insert(name.to_string(), value.clone());
+            // Scripts round whole numbers that are greater, as seeds may be.
+            let great = value.as_u64().filter(|whole| *whole > 1 << 53);
+            let value = great.map_or_else(|| value.clone(), |whole| whole.to_string().into());
+            into.insert(name.to_string(), value);
             return;
         };
         for (key, value) in group {
@@ -180,9 +208,9 @@ pub(crate) fn flat(settings: &Value) -> Map<String, Value> {
     all
 }
 
-/// Where a record lies, and when it was written.
-pub(crate) fn place_of(record: &Path) -> (PathBuf, Option<SystemTime>) {
+/// Where a record lies, for what was written since.
+pub(crate) fn place_of(record: &Path) -> Folder {
     let folder = record.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let written = fs::metadata(record).and_then(|about| about.modified()).ok();
-    (folder.unwrap_or(Path::new(".")).to_path_buf(), written)
+    let since = fs::metadata(record).and_then(|about| about.modified()).ok();
+    Folder { path: folder.unwrap_or(Path::new(".")).to_path_buf(), since, is_named: false }
 }

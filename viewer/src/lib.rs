@@ -36,6 +36,8 @@ use asperity::record::LoadingRecord;
 use asperity::{Error, LoadingPath};
 use serde_json::{Value, json};
 
+use crate::beside::Folder;
+
 pub use facts::reason;
 pub use table::PathTable;
 
@@ -47,7 +49,7 @@ pub struct Source<'a> {
     name: String,
     record: &'a LoadingRecord,
     path: Option<&'a mut LoadingPath>,
-    folders: Vec<(PathBuf, Option<SystemTime>)>,
+    folders: Vec<Folder>,
     has_fields: bool,
 }
 
@@ -82,15 +84,16 @@ impl<'a> Source<'a> {
     /// With the tables of a folder, whatever their age; once, if the record lies in it too.
     #[must_use]
     pub fn with_folder(mut self, folder: &Path) -> Self {
-        self.folders.retain(|(other, _)| !beside::is_same(other, folder));
-        self.folders.push((folder.to_path_buf(), None));
+        self.folders.retain(|other| !beside::is_same(&other.path, folder));
+        self.folders.push(Folder { path: folder.to_path_buf(), since: None, is_named: true });
         self
     }
 
     /// With the tables of a folder that were not written before a moment.
     #[must_use]
     pub fn with_folder_since(mut self, folder: &Path, moment: SystemTime) -> Self {
-        self.folders.push((folder.to_path_buf(), Some(moment)));
+        let (path, since) = (folder.to_path_buf(), Some(moment));
+        self.folders.push(Folder { path, since, is_named: true });
         self
     }
 }
@@ -99,7 +102,10 @@ impl<'a> Source<'a> {
 #[derive(Debug, Default)]
 pub struct Report {
     command: Option<String>,
+    is_in_millimetres: bool,
     records: Vec<Value>,
+    /// Files of the tables of the first record.
+    tables: Vec<PathBuf>,
     notes: Vec<String>,
 }
 
@@ -117,14 +123,21 @@ impl Report {
         self
     }
 
+    /// At first in mm, N and MPa, and not in SI units with prefixes; its reader may choose others.
+    #[must_use]
+    pub fn in_millimetres(mut self) -> Self {
+        self.is_in_millimetres = true;
+        self
+    }
+
     /// What was left out, and why; the page says it too.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Adds a path, the first or the second. Where its fields cannot be computed, as on a kernel that is not of the
-    /// crate, the page has none and says why.
+    /// Adds a path, the first or the second. Tables that are found for both are shown once. Where its fields cannot be
+    /// computed, as on a kernel that is not of the crate, the page has none and says why.
     ///
     /// # Errors
     ///
@@ -146,11 +159,20 @@ impl Report {
                 expected: "at least 1",
             });
         }
-        let (mut notes, mut panels, mut settings) = (Vec::new(), Vec::new(), None);
-        for (folder, since) in folders {
-            let found = beside::of(&folder, since);
+        let (mut notes, mut settings) = (Vec::new(), None);
+        let (mut files, mut panels, mut shown) = (Vec::new(), Vec::new(), Vec::new());
+        for folder in folders {
+            let found = beside::of(&folder);
             notes.extend(found.notes);
-            panels.extend(found.panels);
+            for (file, panel) in found.panels {
+                match self.tables.iter().position(|other| beside::is_same(other, &file)) {
+                    Some(place) => shown.push(place),
+                    None => {
+                        files.push(file);
+                        panels.push(panel);
+                    }
+                }
+            }
             settings = settings.or(found.settings.map(|all| beside::flat(&all)));
         }
         let events = events::of(record)?;
@@ -170,6 +192,10 @@ impl Report {
         let (nx, ny) = grid.shape();
         let (lx, ly) = grid.sides();
         self.notes.extend(notes.iter().cloned());
+        for place in shown {
+            self.records[0]["panels"][place]["both"] = true.into();
+        }
+        self.tables.extend(files);
         self.records.push(json!({
             "name": name,
             "nx": nx,
@@ -199,10 +225,13 @@ impl Report {
     /// What the page shows, as its scripts read it.
     #[must_use]
     pub fn data(&self) -> Value {
+        let millimetres = || json!({"length": "mm", "force": "N", "pressure": "MPa"});
+        let units = self.is_in_millimetres.then(millimetres);
         json!({
             "format": 1,
             "program": concat!("asperity ", env!("CARGO_PKG_VERSION")),
             "command": self.command,
+            "units": units,
             "records": self.records,
         })
     }

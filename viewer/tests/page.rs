@@ -288,6 +288,23 @@ fn without_a_kernel_there_are_no_fields() -> Result<(), Error> {
 /// A folder that is removed with its test.
 struct Scratch(PathBuf);
 
+impl Scratch {
+    fn new(name: &str) -> std::io::Result<Self> {
+        let name = format!("asperity-report-{name}-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        fs::create_dir_all(&folder)?;
+        Ok(Self(folder))
+    }
+
+    /// Writes a file of an age in seconds.
+    fn write(&self, name: &str, text: &str, age: u64) -> std::io::Result<()> {
+        let file = self.0.join(name);
+        fs::write(&file, text)?;
+        let written = SystemTime::now() - Duration::from_secs(age);
+        File::options().write(true).open(&file)?.set_modified(written)
+    }
+}
+
 impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
@@ -297,24 +314,16 @@ impl Drop for Scratch {
 /// Tables beside a record are shown if they are not older; what is left out is named.
 #[test]
 fn tables_beside_the_record_are_shown() -> Result<(), Box<dyn std::error::Error>> {
-    let folder =
-        Scratch(std::env::temp_dir().join(format!("asperity-report-{}", std::process::id())));
-    fs::create_dir_all(&folder.0)?;
-    let write = |name: &str, text: &str, age: u64| -> std::io::Result<()> {
-        let file = folder.0.join(name);
-        fs::write(&file, text)?;
-        File::options()
-            .write(true)
-            .open(&file)?
-            .set_modified(SystemTime::now() - Duration::from_secs(age))
-    };
+    let folder = Scratch::new("beside")?;
+    let write = |name: &str, text: &str, age: u64| folder.write(name, text, age);
     write("path.npz", "", 100)?;
     write("leak.csv", "load,leak_rate,imbalance\n1,2e-3,0\n2,1e-3,0\n3,,0\n", 50)?;
     write("creep.csv", "time,load\n0,1\n", 200)?;
     write("slip.csv", "displacement,tangential_load\n1\n", 10)?;
     // Of the loads of a joint, and not of what it does.
     write("history.csv", "time,load\n0,0\n1,1\n", 10)?;
-    write("settings.json", r#"{"surface": {"file": "a.npy"}, "e_star": 1.5}"#, 300)?;
+    let settings = r#"{"surface": {"file": "a.npy", "seed": 12345678901234567891}, "e_star": 1.5}"#;
+    write("settings.json", settings, 300)?;
     let record = record_of(16, 0.1, None, false)?;
     let shown = |source: &dyn Fn(Source<'_>) -> Source<'_>| -> Result<(Value, Vec<String>), Error> {
         let mut report = Report::new();
@@ -342,6 +351,9 @@ fn tables_beside_the_record_are_shown() -> Result<(), Box<dyn std::error::Error>
         ])
     );
     assert_eq!(beside["settings"]["surface.file"], "a.npy");
+    // A script would read the number as another one.
+    assert_eq!(beside["settings"]["surface.seed"], "12345678901234567891");
+    assert_eq!(beside["settings"]["e_star"], 1.5);
     assert_eq!(
         notes,
         [
@@ -354,5 +366,45 @@ fn tables_beside_the_record_are_shown() -> Result<(), Box<dyn std::error::Error>
     assert_eq!(files(&all), ["creep.csv", "leak.csv"]);
     let (both, _) = shown(&|source| source.beside(&record_file).with_folder(&folder.0.join(".")))?;
     assert_eq!(files(&both), files(&all));
+
+    // The page tells where tables lie that are not beside the record, as their folder was given.
+    let given = folder.0.join(".");
+    assert_eq!(both["panels"][0]["folder"].as_str(), given.to_str());
+    assert!(beside["panels"][0]["folder"].is_null());
+    // Creep is drawn over the logarithm of time, as in its picture, and a leak over the load.
+    assert_eq!(both["panels"][0]["log"], true);
+    assert_eq!(both["panels"][1]["log"], false);
     Ok(())
+}
+
+/// Two records of one folder have its tables together, but for those that one of them is not older than.
+#[test]
+fn tables_beside_two_records_are_shown_once() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = Scratch::new("two")?;
+    folder.write("a.npz", "", 100)?;
+    folder.write("leak.csv", "load,leak_rate\n1,2e-3\n2,1e-3\n", 70)?;
+    folder.write("b.npz", "", 50)?;
+    folder.write("slip.csv", "displacement,tangential_load\n0,0\n1,1\n", 10)?;
+    let record = record_of(16, 0.1, None, false)?;
+    let mut report = Report::new();
+    report.add(Source::new("a", &record).beside(&folder.0.join("a.npz")))?;
+    report.add(Source::new("b", &record).beside(&folder.0.join("./b.npz")))?;
+    let panels = |number: usize| -> Vec<(String, bool)> {
+        let data = report.data();
+        let panels = data["records"][number]["panels"].as_array().unwrap().clone();
+        let about = |panel: &Value| (panel["file"].as_str().unwrap().into(), panel["both"] == true);
+        panels.iter().map(about).collect()
+    };
+    assert_eq!(panels(0), [("slip.csv".to_string(), true), ("leak.csv".to_string(), false)]);
+    assert_eq!(panels(1), []);
+    assert_eq!(report.notes(), ["leak.csv is left out: it is older than the record"]);
+    Ok(())
+}
+
+/// The page begins in the units that were asked for.
+#[test]
+fn a_page_has_the_units_of_its_reader() {
+    assert!(Report::new().data()["units"].is_null());
+    let units = &Report::new().in_millimetres().data()["units"];
+    assert_eq!(*units, serde_json::json!({"length": "mm", "force": "N", "pressure": "MPa"}));
 }
