@@ -165,7 +165,7 @@ impl KernelTable {
     /// displacement, is then the approach itself. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies
     /// without a base, where the symbol diverges, the symbol is not evaluated at q = 0, and the kernel gets a gauge
     /// that is good to compute in. A promise that gaps are [convex](ContactGrowth::Convex) holds from a least gauge on:
-    /// where there is none, or one that would take all digits, only [`ContactGrowth::Monotone`] is left of it.
+    /// of one that would take all digits, as on a strip, only [`ContactGrowth::Monotone`] is left.
     ///
     /// There is no such constructor for a free boundary: a finite number of waves only describes bodies
     /// that repeat, and a symbol sampled on a larger grid gives the displacements of all its images as
@@ -193,14 +193,16 @@ impl KernelTable {
         let Some(gauge) = table.computing_gauge() else {
             return Ok(table);
         };
-        if growth == ContactGrowth::Convex {
-            // The promise holds from the least gauge on.
-            if let Some(gauge) = convex(symbol.least_gauge(), gauge) {
-                return Ok(table.in_gauge(gauge));
-            }
+        if growth != ContactGrowth::Convex {
+            return Ok(table.in_gauge(gauge));
+        }
+        // The promise holds from the least gauge on. Without any it is not true, which a check tells.
+        let least = symbol.least_gauge();
+        let known = convex(least, gauge);
+        if least.is_some() && known.is_none() {
             table.growth = ContactGrowth::Monotone;
         }
-        Ok(table.in_gauge(gauge))
+        Ok(table.in_gauge(known.unwrap_or(gauge)))
     }
 
     /// The same coefficients, with the mean displacement of a periodic body taken as said.
