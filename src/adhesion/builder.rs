@@ -98,10 +98,9 @@ impl AdhesiveBuilder<'_> {
     ///
     /// # Errors
     ///
-    /// Those of [`Problem::new`] and of [`Adhesion::on`]; [`Error::OutOfRange`] for a range beside which heights are
-    /// rounding; [`AdhesionError::GrowthUnknown`] for a kernel of
-    /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] and [`AdhesionError::Behind`] for targets that make no sense;
-    /// [`Error::MemoryBudget`] if not even the grid fits.
+    /// Those of [`Problem::new`] and of [`Adhesion::on`]; [`AdhesionError::GrowthUnknown`] for a kernel of
+    /// [`ContactGrowth::Unknown`]; [`Error::OutOfRange`] for a range beside which heights are rounding, and, as
+    /// [`AdhesionError::Behind`], for targets that make no sense; [`Error::MemoryBudget`] if not even the grid fits.
     pub fn build(self) -> Result<AdhesivePath, Error> {
         if self.window_size == Some(0) {
             let (quantity, expected) = ("window size", "at least 1");

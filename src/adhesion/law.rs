@@ -105,8 +105,8 @@ impl Adhesion {
     /// # Errors
     ///
     /// That of [`Self::check`]; [`Error::OutOfRange`] for a range h₂ that does not lie between w/σ₀ and 2w/σ₀, and one
-    /// so long that the slope is no number; and
-    /// [`AdhesionError::Unresolved`] and [`AdhesionError::NoRoomForSlope`] for cells that are too large for the law.
+    /// so long that the slope is no number; and [`AdhesionError::Unresolved`] and [`AdhesionError::NoRoomForSlope`] for
+    /// cells that are too large for the law.
     pub fn on(&self, kernel: &dyn InfluenceKernel) -> Result<CohesiveLaw, Error> {
         self.of(&KernelTable::new(kernel)?)
     }
@@ -151,9 +151,6 @@ impl Adhesion {
             }
         };
         let law = CohesiveLaw { stress, flat, range, compliance };
-        let is_number = law.slope().is_normal() && (range * range).is_finite();
-        let expected = "short enough for a slope and energies that are numbers";
-        Error::require("range of adhesion", range, is_number, expected)?;
         let resolution = law.resolution();
         if resolution.is_nan() || resolution > GREATEST {
             let cell_needed = cell * WARNED / resolution;
@@ -165,6 +162,9 @@ impl Adhesion {
             }
             .into());
         }
+        let is_number = law.slope().is_normal() && (range * range).is_finite();
+        let expected = "short enough for a slope and energies that are numbers";
+        Error::require("range of adhesion", range, is_number, expected)?;
         Ok(law)
     }
 }

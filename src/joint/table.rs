@@ -119,10 +119,10 @@ impl<'a> InterfaceTableBuilder<'a> {
     ///
     /// [`Error::NotPositive`] for tolerance, friction and compliance ratio; [`Error::OutOfRange`] for a tolerance of 1
     /// and more, for a path with fewer than two rows, and for stiffnesses that are negative or NaN;
-    /// [`BedError::NotFromFirstTouch`]; [`JointError::NoFunction`] where the mean gap opens so much under a greater load that the law is no function of
-    /// the overclosure; [`JointError::NoUnloadingStiffness`] if nodes have yielded, and conductances or tangential
-    /// stiffnesses are asked for without the stiffness of [`Conduction::of`]; [`Error::NotHomogeneous`] for these on
-    /// layers.
+    /// [`BedError::NotFromFirstTouch`]; [`JointError::NoFunction`] where the mean gap opens so much under a greater load
+    /// that the law is no function of the overclosure; [`JointError::NoUnloadingStiffness`] if nodes have yielded, and
+    /// conductances or tangential stiffnesses are asked for without the stiffness of [`Conduction::of`];
+    /// [`Error::NotHomogeneous`] for these on layers.
     pub fn build(self) -> Result<InterfaceTable, Error> {
         let tolerance = Error::require_positive("tolerance of the table", self.tolerance)?;
         Error::require("tolerance of the table", tolerance, tolerance < 1.0, "below 1")?;

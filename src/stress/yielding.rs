@@ -103,7 +103,8 @@ fn first_reached(
         return Ok(None);
     }
     let has_yielded = |state: &&LoadingState| {
-        state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0)
+        let yielded = state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes);
+        state.contact.load > 0.0 && yielded > 0
     };
     let node = history.states().iter().find(has_yielded);
     let mut below: Option<FirstYield> = None;
