@@ -172,11 +172,14 @@ impl ContactState {
         })
     }
 
+    /// Number of nodes that have yielded, 0 without a hardness.
+    pub(crate) fn yielded_nodes(&self) -> usize {
+        self.plastic.map_or(0, |plastic| plastic.yielded_nodes)
+    }
+
     /// Whether all nodes in contact have yielded: the approach grows, and the load does not.
     pub(crate) fn is_plateau(&self) -> bool {
-        self.plastic.is_some_and(|plastic| {
-            plastic.yielded_nodes > 0 && plastic.yielded_nodes == self.contact_nodes
-        })
+        self.yielded_nodes() > 0 && self.yielded_nodes() == self.contact_nodes
     }
 
     /// The state further on a plateau: gaps close as the approach grows, and yielded nodes give way.

@@ -54,10 +54,7 @@ impl Conduction {
         let body = history.layering();
         let apart = if has_distant_point(body) { unresolved } else { 2.0 * unresolved };
         let states = history.states();
-        let has_yielded = |state: &LoadingState| {
-            state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0)
-        };
-        if let Some(state) = states.iter().find(|state| has_yielded(state)) {
+        if let Some(state) = states.iter().find(|state| state.contact.yielded_nodes() > 0) {
             return Err(JointError::BoundsWithYielding { step: state.step }.into());
         }
         // Chords between nodes that touch together are noise.

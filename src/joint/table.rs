@@ -156,15 +156,11 @@ impl<'a> InterfaceTableBuilder<'a> {
     fn points(&self) -> Result<Points, Error> {
         let states = self.history.states();
         // Overclosures are from first touch on.
-        let mut unloaded = 0.0;
-        if let Some(ContactState { load, approach, mean_gap, .. }) =
-            states.first().map(|state| state.contact)
-        {
-            if load > 0.0 {
-                return Err(BedError::NotFromFirstTouch { load, approach }.into());
-            }
-            unloaded = mean_gap;
+        let first = states.first().map(|state| state.contact);
+        if let Some(ContactState { load, approach, .. }) = first.filter(|first| first.load > 0.0) {
+            return Err(BedError::NotFromFirstTouch { load, approach }.into());
         }
+        let unloaded = first.map_or(0.0, |first| first.mean_gap);
         let mut points = Points::default();
         for state in states {
             if let Some(row) = self.row(state, unloaded)? {

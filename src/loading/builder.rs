@@ -331,6 +331,7 @@ impl<'a> Settings<'a> {
             queue: VecDeque::new(),
             memory: Memory { budget, fixed: fixed_bytes },
             last,
+            inherited: 0.0,
             timings: LoadingTimings::default(),
         };
         let end = limits.expected_nodes(grid.nodes(), None);

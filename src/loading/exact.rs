@@ -43,8 +43,6 @@ pub(super) struct Exact {
     ranking: Ranking,
     /// Whether the present solution is one of the factor before the last nodes yielded.
     is_behind: bool,
-    /// The error of the state that the path goes on from, if that is an estimate.
-    inherited: f64,
 }
 
 /// What is known when a window begins.
@@ -58,19 +56,7 @@ struct Survey {
 
 impl Exact {
     pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
-        Self {
-            growth,
-            size,
-            window: Window::default(),
-            ranking: Ranking::new(),
-            is_behind: false,
-            inherited: 0.0,
-        }
-    }
-
-    /// Goes on from a state of which the approach may be off by `error`.
-    pub(super) fn inherit(&mut self, error: f64) {
-        self.inherited = error;
+        Self { growth, size, window: Window::default(), ranking: Ranking::new(), is_behind: false }
     }
 
     /// Computes a window of states with at most `most_nodes` in contact, which must be more than there are; none if
@@ -218,8 +204,8 @@ impl Exact {
             let tolerance = TOLERANCE * (run.problem.grid().cell_aspect() / SQUARE).max(1.0);
             let length = run.problem.greatest_gap() + run.scalars.approach();
             // Nodes that have yielded by an estimate may not be as deep as that by a factor.
-            let estimated = if self.inherited > 0.0 { SHALLOW * length } else { 0.0 };
-            let gap = (tolerance * length).max(self.inherited).max(estimated);
+            let estimated = if run.inherited > 0.0 { SHALLOW * length } else { 0.0 };
+            let gap = (tolerance * length).max(run.inherited).max(estimated);
             let slack = Slack { gap, tension: gap, excess: gap, rate: TOLERANCE };
             let rates = survey(run, &plastic, &mut self.ranking, slack)?;
             let times = self.ranking.iter().map(|&(time, _)| time);

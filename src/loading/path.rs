@@ -177,8 +177,8 @@ impl Iterator for LoadingPath {
         let mut most = end.saturating_sub(done);
         if self.run.plastic.is_some() {
             // Each node in contact may yield.
-            let plastic = self.state.and_then(|state| state.contact.plastic);
-            most += end.saturating_sub(plastic.map_or(0, |plastic| plastic.yielded_nodes));
+            let yielded = self.state.map_or(0, |state| state.contact.yielded_nodes());
+            most += end.saturating_sub(yielded);
         }
         // One more for an error or a limit.
         (0, Some(most + 1))

@@ -64,8 +64,7 @@ impl LoadingPath {
         if phase.restore(run, &order, end)? {
             self.handed_over_at = Some(order.len());
         }
-        self.single.inherit(last.approach_error);
-        self.exact.inherit(last.approach_error);
+        run.inherited = last.approach_error;
         phase.renew_field(run, run.scalars.approach())?;
         run.scalars.renew_load(&run.problem, &run.contact, &run.field);
         let snapshot = Snapshot::of(run, phase, &last)?;
@@ -135,7 +134,7 @@ pub(crate) fn replay(
             ));
         }
         let yielded = contact.len() - elastic.len();
-        let said = state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes);
+        let said = state.contact.yielded_nodes();
         if said != yielded {
             return Err(not_a_path(
                 state,

@@ -54,6 +54,9 @@ pub(super) struct LoadingRun {
     pub(super) memory: Memory,
     /// The last state computed, behind which no other falls; `None` where contact need not grow.
     pub(super) last: Option<ContactState>,
+    /// The error of the state that the path goes on from, if that is an estimate and no solution has been without
+    /// tension and overlap since.
+    pub(super) inherited: f64,
     pub(super) timings: LoadingTimings,
 }
 

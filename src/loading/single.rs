@@ -37,20 +37,12 @@ pub(super) struct Single {
     tied: TiedEvents,
     /// Whether the next event has been looked for.
     has_begun: bool,
-    /// The error of the state that the path goes on from, if that is an estimate and no solution has been without
-    /// tension and overlap since.
-    inherited: f64,
 }
 
 impl Single {
     /// Whether the next event is known at the present state.
     pub(super) fn has_begun(&self) -> bool {
         self.has_begun
-    }
-
-    /// Goes on from a state of which the approach may be off by `error`.
-    pub(super) fn inherit(&mut self, error: f64) {
-        self.inherited = error;
     }
 
     /// Finds the next event, if that has not been done.
@@ -77,7 +69,7 @@ impl Single {
             self.has_begun &= attempt == Attempt::NotBegun;
             if attempt == Attempt::Made {
                 // Its end has been checked.
-                self.inherited = 0.0;
+                run.inherited = 0.0;
                 return Ok(());
             }
             if !self.has_begun {
@@ -98,7 +90,7 @@ impl Single {
         // What is inherited may be tension that no release explains.
         if let Phase::Factor { updater, log, .. } = phase
             && next.event == ContactEvent::Touch
-            && self.inherited == 0.0
+            && run.inherited == 0.0
         {
             let front = run.scalars.approach();
             let solver = (&mut **updater, log);
@@ -117,7 +109,7 @@ impl Single {
         } else {
             Self::release(run, phase, step, next.node)?;
         }
-        let inherited = self.inherited;
+        let inherited = run.inherited;
         run.scalars.advance(next.approach);
         let contact_nodes = run.contact.len();
         let event = (step, next.event, next.node);
@@ -159,7 +151,7 @@ impl Single {
         let overlap = WindowTolerances::of(run, phase.tolerance()).overlap(approach);
         let length = run.problem.greatest_gap() + approach.abs();
         let is_pulled = |overlap| run.negative_pressure(approach, overlap);
-        let allowed = if self.inherited > 0.0 { overlap.max(ESTIMATED * length) } else { overlap };
+        let allowed = if run.inherited > 0.0 { overlap.max(ESTIMATED * length) } else { overlap };
         if let Some((node, value)) = is_pulled(allowed) {
             return Err(run.not_monotone("pressure", node, value));
         }
@@ -176,7 +168,7 @@ impl Single {
             if line.closing > LEAST_RATE { approach + line.touches() } else { f64::INFINITY }
         })?;
         if is_sound {
-            self.inherited = 0.0;
+            run.inherited = 0.0;
         }
         self.upcoming = self.first_event(run, overlap);
         run.timings.choice += start.elapsed();

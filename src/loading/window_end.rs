@@ -114,7 +114,7 @@ impl LoadingPath {
                 _ => false,
             };
             let nodes = contact.len() + yielded.len();
-            let said = state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes);
+            let said = state.contact.yielded_nodes();
             let is_counted = state.contact.contact_nodes == nodes && said == yielded.len();
             let is_next = is_event && state.step == step && is_counted;
             if !is_next || !state.contact.is_finite() || state.approach_error.is_nan() {
@@ -205,8 +205,7 @@ impl LoadingPath {
         if let NextWindow::Factor(end) = &end.next {
             self.exact.follow_on(&end.log, end.solution.is_some());
             // Events of a factor are exact but for what was inherited.
-            self.single.inherit(front.approach_error);
-            self.exact.inherit(front.approach_error);
+            run.inherited = front.approach_error;
             if let Some(solution) = &end.solution {
                 let approach = run.scalars.approach();
                 run.field.place(&run.contact, solution.clone(), approach)?;

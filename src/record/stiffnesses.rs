@@ -174,7 +174,7 @@ impl Stiffnesses {
             [(CONTACT, contact_stiffness), (INTERFACIAL, interfacial_stiffness)]
         };
         let earlier = before.map_or([("", None); 2], of);
-        let has_yielded = state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0);
+        let has_yielded = state.contact.yielded_nodes() > 0;
         for ((quantity, value), (_, earlier)) in of(state).into_iter().zip(earlier) {
             if before.is_some() && earlier.is_some() != value.is_some() {
                 let [value, expected] = [value, earlier].map(|value| value.unwrap_or(f64::NAN));

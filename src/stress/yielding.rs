@@ -102,11 +102,8 @@ fn first_reached(
     if last.contact.load <= 0.0 {
         return Ok(None);
     }
-    let has_yielded = |state: &&LoadingState| {
-        let yielded = state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes);
-        state.contact.load > 0.0 && yielded > 0
-    };
-    let node = history.states().iter().find(has_yielded);
+    let mut states = history.states().iter();
+    let node = states.find(|state| state.contact.load > 0.0 && state.contact.yielded_nodes() > 0);
     let mut below: Option<FirstYield> = None;
     let mut above = at(node.unwrap_or(last).contact.load)?;
     if above.greatest.value < yield_stress {

@@ -9,10 +9,10 @@ const send = (type, rest = {}) => worker.postMessage({ type, ...rest });
 
 /** A number in a field, in SI units; nothing if it is empty. */
 function number(id, factor = 1) {
-  const field = byId(id), text = field.value.trim().replace("−", "-").replace(/^([^.]*),([^.,]*)$/, "$1.$2");
+  const field = byId(id), text = field.value.trim().replace("−", "-");
   if (text === "") return undefined;
-  if (/^-?[1-9]\d{0,2},\d{3}$/.test(field.value.trim())) throw new Fault(`“${field.value}” may be thousands or not: write a point, or no comma.`);
-  const value = Number(text);
+  if (/^-?[1-9]\d{0,2},\d{3}$/.test(text)) throw new Fault(`“${field.value}” may be thousands or not: write a point, or no comma.`);
+  const value = Number(text.replace(/^([^.]*),([^.,]*)$/, "$1.$2"));
   if (!Number.isFinite(value)) throw new Fault(`“${field.value}” is no number.`);
   // Powers of ten that are not whole are not what they say: 50 µm is 5e-5, and 50 · 1e-6 is not.
   return factor < 1 ? value / (1 / factor) : value * factor;
