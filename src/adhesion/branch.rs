@@ -53,7 +53,9 @@ impl AdhesiveBranch {
     /// the one with which they pull each other in.
     #[must_use]
     pub fn pull_off(&self) -> f64 {
-        -self.states.iter().map(|state| state.contact.load).fold(0.0, f64::min)
+        let least = self.states.iter().map(|state| state.contact.load).fold(0.0, f64::min);
+        // 0 rather than −0.
+        0.0 - least
     }
 
     /// Energy lost in jumps from the first of these states to the last \[J\]; over loading and unloading it is what the

@@ -216,6 +216,11 @@ impl AdhesivePath {
         }
     }
 
+    /// Where the branch is to end, as long as it has not.
+    pub(crate) fn pending(&self) -> Option<&[ContactTarget]> {
+        self.end().is_none().then(|| self.targets.all())
+    }
+
     /// What has happened up to the present state.
     pub(crate) fn trace(&self) -> Trace {
         let mut trace = self.trace.clone();
@@ -223,14 +228,19 @@ impl AdhesivePath {
         trace
     }
 
-    /// Puts a path that has not begun behind the last state of another one of the same problem, where it has ended: it
-    /// can turn around or go on.
+    /// Puts a path that has not begun behind the last state of another one of the same problem: it goes on to the first
+    /// of the targets that it had before it; without them it has ended, and can turn around or go on.
     ///
     /// # Errors
     ///
     /// Those of [`Trace::follow`] and of the updater, and [`Error::Inconsistent`] if the nodes do not carry the load of
     /// the state.
-    pub(crate) fn restore(&mut self, trace: Trace, last: AdhesiveState) -> Result<(), Error> {
+    pub(crate) fn restore(
+        &mut self,
+        trace: Trace,
+        last: AdhesiveState,
+        pending: Option<&[ContactTarget]>,
+    ) -> Result<(), Error> {
         let mut most = 0;
         let nodes = trace.follow(self.grid().nodes(), |_, [.., in_contact]| {
             most = most.max(in_contact);
@@ -256,7 +266,11 @@ impl AdhesivePath {
         self.direction = last.direction;
         self.trace = trace;
         self.last = Some(last);
-        self.end = Some(AdhesiveEnd::Target);
+        self.targets = Targets::of(pending.unwrap_or_default(), &self.grid())?;
+        if let Some(plain) = &mut self.plain {
+            plain.turn(last.direction, self.targets.all());
+        }
+        self.end = pending.is_none().then_some(AdhesiveEnd::Target);
         Ok(())
     }
 

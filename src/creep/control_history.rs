@@ -32,6 +32,9 @@ impl ControlHistory {
     }
 }
 
+/// Most steps that a history is followed in.
+const MOST_STEPS: usize = 10_000_000;
+
 /// How steps are spread over time: short behind each corner, and longer from step to step, as the memory of the corner
 /// fades.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +58,8 @@ impl Steps {
     /// Steps half as long, everywhere: what they change is three times the error that is left.
     #[must_use]
     pub fn halved(self) -> Self {
-        Self { first: 0.5 * self.first, growth: self.growth.sqrt(), least: 2 * self.least }
+        let least = self.least.saturating_mul(2);
+        Self { first: 0.5 * self.first, growth: self.growth.sqrt(), least }
     }
 
     /// The times of the steps from the first corner to `end`, all corners up to there among them. A jump has its time
@@ -63,7 +67,8 @@ impl Steps {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for steps that are not positive, a growth below 1, and an end that is not finite.
+    /// [`Error::OutOfRange`] for steps that are not positive, a growth below 1, an end that is not finite, and for more
+    /// than ten million steps.
     pub fn times(
         &self,
         prony: &Prony,
@@ -100,6 +105,14 @@ impl Steps {
                 if next >= until - 0.3 * step.min(longest) || next <= now {
                     break;
                 }
+                let count = times.len();
+                let is_possible = count <= MOST_STEPS;
+                Error::require(
+                    "number of steps",
+                    count as f64,
+                    is_possible,
+                    "at most ten million",
+                )?;
                 times.push(next);
                 now = next;
                 step *= self.growth;
@@ -146,7 +159,7 @@ impl ViscoelasticBed<'_> {
         let mut states = Vec::with_capacity(times.len());
         for &time in times {
             while let Some(&(at, value)) = corners.get(next).filter(|corner| corner.0 <= time) {
-                if is_new && next == 0 && self.state().time < at {
+                if next == 0 && self.state().time < at {
                     self.to(at, course.control(0.0))?;
                 }
                 self.to(at, course.control(value))?;
@@ -192,6 +205,22 @@ mod tests {
         // At 3.5 s hardly a step would be left to the corner.
         let load = load.hold(4.0)?.to(2.0, 4.0)?;
         assert_eq!(steps.times(&body, &load, 8.0)?, [0.0, 0.5, 1.5, 4.0, 4.5, 5.5, 8.0]);
+        Ok(())
+    }
+
+    /// Steps without end are refused: 10¹⁰ in a second, and 4 × 10⁷ of a body that does not creep.
+    #[test]
+    fn too_many_steps_are_refused() -> Result<(), Error> {
+        let load = PiecewiseLinear::step(1.0)?;
+        let body = Prony::relaxation(1.0, &[(1.0, 1.0)])?;
+        let even = Steps { first: 1e-10, growth: 1.0, least: 1 };
+        let many = Steps { least: 40_000_000, ..Steps::default() };
+        for (steps, body) in [(even, &body), (many, &Prony::elastic(1.0)?)] {
+            let refused = steps.times(body, &load, 1.0);
+            assert!(matches!(refused, Err(Error::OutOfRange { quantity: "number of steps", .. })));
+        }
+        let most = (0..70).fold(Steps::default(), |steps, _| steps.halved());
+        assert_eq!(most.least, usize::MAX);
         Ok(())
     }
 

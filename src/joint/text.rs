@@ -73,14 +73,14 @@ impl InterfaceTable {
         self.text_in(program, FeUnits::Si)
     }
 
-    /// The same in other units; only the names of CSV do not tell which.
+    /// The same in other units. The names of CSV tell them unless they are those of SI.
     #[must_use]
     pub fn text_in(&self, program: FeProgram, units: FeUnits) -> String {
         let table = self.map_rows(|row| units.of(row, self.carrier()));
         match program {
             FeProgram::Abaqus | FeProgram::CalculiX => table.keywords(program, units),
             FeProgram::Moose => table.functions(units),
-            FeProgram::Csv => table.columns(),
+            FeProgram::Csv => table.columns(units),
         }
     }
 
@@ -94,7 +94,7 @@ impl InterfaceTable {
             ),
             "overclosure: what the mean gap has closed since first touch; all quantities per nominal area".to_string(),
             format!(
-                "{} rows; pressures between them err by at most {:e} of their value, or of a thousandth of the greatest one below that; other quantities by as much of theirs",
+                "{} rows; between them values err by at most {:e} of themselves (pressures below a thousandth of the greatest: of that thousandth)",
                 self.rows().len(),
                 self.tolerance()
             ),
@@ -190,15 +190,23 @@ impl InterfaceTable {
         text
     }
 
-    fn columns(&self) -> String {
-        let mut names = vec!["pressure", "overclosure"];
+    fn columns(&self, units: FeUnits) -> String {
+        let mut columns = vec![("pressure", "MPa"), ("overclosure", "mm")];
         if let Some(carrier) = self.carrier() {
-            names.push(carrier.column());
+            let unit = match carrier {
+                Carrier::Heat => "mW/(mm2 K)",
+                Carrier::Current => "A/(mV mm2)",
+            };
+            columns.push((carrier.column(), unit));
         }
         if self.friction().is_some() {
-            names.extend(["tangential_stiffness", "slip_limit"]);
+            columns.extend([("tangential_stiffness", "MPa/mm"), ("slip_limit", "MPa")]);
         }
-        let mut text = names.join(",") + "\n";
+        let names = columns.iter().map(|(name, unit)| match units {
+            FeUnits::Si => name.to_string(),
+            FeUnits::Millimetres => format!("{name} [{unit}]"),
+        });
+        let mut text = names.collect::<Vec<_>>().join(",") + "\n";
         for row in self.rows() {
             let optional = [row.conductance, row.tangential_stiffness, row.slip_limit];
             let all = [Some(row.pressure), Some(row.overclosure)].into_iter().chain(optional);

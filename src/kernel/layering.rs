@@ -47,27 +47,27 @@ impl Layering {
         let (asked, reason) = match theory {
             Theory::Conductance => (
                 "a conductance",
-                "current and displacement solve the same problem on a half-space alone. Right is the current through the same contact into a \
+                "current and displacement solve the same problem on a half-space alone. It takes the current through the same contact into a \
                  conductor with these layers, which is not computed here",
             ),
             Theory::TangentialStiffness => (
                 "a tangential stiffness",
-                "tangential over normal compliance is one number on a half-space alone, and in layers another one for each wavelength. Right is the \
+                "tangential over normal compliance is one number on a half-space alone, and in layers another one for each wavelength. It takes the \
                  stiffness by the tangential influence coefficients of the layers, which are not computed here",
             ),
             Theory::Slip => (
                 "partial slip",
-                "it takes tangential influence coefficients in proportion to normal ones, and those of layers are not. Right is a solution with both, \
-                 which is not computed here",
+                "it takes tangential influence coefficients in proportion to normal ones, and those of layers are not. A solution with both \
+                 is needed, which is not computed here",
             ),
             Theory::Creep => (
                 "creep",
-                "one relaxation function would let all materials creep alike, also an elastic base. Right is one for each material; here layers of one \
+                "one relaxation function would let all materials creep alike, also an elastic base. It takes one for each material; here layers of one \
                  material on a rigid base, against a rigid body, may creep",
             ),
             Theory::Traction => (
                 "the stress below tractions",
-                "it is that of a half-space. Right is the stress by the transfer matrices of the layers, which is computed here for pressures alone",
+                "it is that of a half-space. It takes the stress by the transfer matrices of the layers, which is computed here for pressures alone",
             ),
         };
         let holds = match self {
@@ -157,7 +157,7 @@ mod tests {
             assert!(Layering::SemiPeriodicHalfSpace.check(theory).is_ok());
             assert_eq!(Layering::OneMaterial.check(theory).is_ok(), theory == Creep);
             let refused = Layering::Several.check(theory).err().map(|error| error.to_string());
-            assert!(refused.is_some_and(|told| told.contains("layers") && told.contains("Right")));
+            assert!(refused.is_some_and(|told| told.contains("layers") && told.contains("not")));
         }
     }
 }

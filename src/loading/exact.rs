@@ -192,7 +192,8 @@ impl Exact {
             let wanted = if may_yield { wanted.saturating_mul(2) } else { wanted };
             let size = automatic_window(count, nodes, WITH_FACTOR).min(wanted);
             // Where nodes leave often, few of those watched touch before the next one does.
-            let likely = FEWEST_BETWEEN_RELEASES.max(AS_MANY_AGAIN * log.last_stayed());
+            let likely =
+                FEWEST_BETWEEN_RELEASES.max(AS_MANY_AGAIN.saturating_mul(log.last_stayed()));
             if run.may_leave() { size.min(likely) } else { size }
         });
         size.min(if may_yield { nodes } else { nodes - run.contact_nodes() })

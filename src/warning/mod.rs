@@ -277,7 +277,7 @@ impl fmt::Display for Warning {
             ),
             Self::SmallPatches { contact_nodes, excess } => write!(
                 f,
-                "the contact is not resolved: the area of its {} is some {:.0} % too large. Contact area \
+                "the contact is not resolved: the area of its {} may be up to {:.0} % too large. Contact area \
                  and greatest pressure depend on the mesh; use the corrected area, or a finer grid",
                 counted(contact_nodes, "cell"),
                 100.0 * excess
@@ -298,7 +298,7 @@ impl fmt::Display for Warning {
                 write!(f, "E* = {} is softer than rubber", pascals(e_star))?;
                 match in_larger_unit(e_star, SOLIDS) {
                     Some((value, unit)) => {
-                        write!(f, ": if the modulus was given in {unit}, it is {}", pascals(value))
+                        write!(f, ": if all moduli were given in {unit}, it is {}", pascals(value))
                     }
                     None => write!(f, ": is the modulus in Pa?"),
                 }
@@ -371,7 +371,8 @@ impl fmt::Display for Warning {
                 }
                 write!(
                     f,
-                    ": the fluid would open the gap, and more would leak. Take a smaller pressure drop, or states above {}",
+                    ": the fluid would open the gap, and more would leak. Take a pressure drop of {} or less, or states above {}",
+                    pascals(DROP * mean_pressure),
                     pascals(pressure_drop / DROP)
                 )
             }

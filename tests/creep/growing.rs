@@ -443,6 +443,12 @@ fn nothing_bears_before_the_first_corner() {
     for (a, b) in early[1..].iter().zip(&from_start) {
         assert_eq!((a.time, a.load, a.approach), (b.time, b.load, b.approach));
     }
+    // Piece by piece as well.
+    let mut contact = ViscoelasticBed::new(&bed, &solid()).unwrap();
+    for (time, once) in [-1.0, 0.0, 0.5].into_iter().zip(&early) {
+        let states = contact.follow(&course, &[time]).unwrap();
+        assert_eq!((states[0].load, states[0].approach), (once.load, once.approach));
+    }
 }
 
 /// In full contact of a periodic half-space mean planes come no closer: a cycle is steady at once, and loses nothing.

@@ -130,13 +130,15 @@ fn record() -> Result<(), Error> {
     Ok(())
 }
 
-/// Interrupted on either branch, within a jump or not, a path goes on to the same events.
+/// Interrupted on either branch, within a jump or not, a path goes on to the same events: where its branch was to end,
+/// and where it is told to.
 fn resume() -> Result<(), Error> {
     let (_, states) = pulled_off(path());
     let all = states.states();
-    for stop in [1, all.len() / 5, all.len() / 2, 4 * all.len() / 5] {
+    let stops = [0, 1, all.len() / 5, all.len() / 2, 4 * all.len() / 5];
+    for (stop, is_told) in stops.into_iter().flat_map(|stop| [(stop, false), (stop, true)]) {
         let mut path = path();
-        let is_unloading = all[stop - 1].direction != all[0].direction;
+        let is_unloading = stop > 0 && all[stop - 1].direction != all[0].direction;
         let mut so_far: Vec<AdhesiveState> = Vec::new();
         if is_unloading {
             so_far.extend(path.run()?.states());
@@ -146,10 +148,12 @@ fn resume() -> Result<(), Error> {
             so_far.extend(path.next().transpose()?);
         }
         let record = AdhesiveRecord::new(&path, so_far.into_iter().collect())?;
-        let mut path = through_a_file(&record, &format!("resume-{stop}")).path()?;
-        match is_unloading {
-            true => path.unload()?,
-            false => path.load_to(ContactTarget::AreaFraction(END))?,
+        let mut path = through_a_file(&record, &format!("resume-{stop}-{is_told}")).path()?;
+        assert_eq!(path.end(), None);
+        match (is_told, is_unloading) {
+            (false, _) => {}
+            (true, true) => path.unload()?,
+            (true, false) => path.load_to(ContactTarget::AreaFraction(END))?,
         }
         let mut rest: Vec<AdhesiveState> = path.run()?.states().to_vec();
         if !is_unloading {

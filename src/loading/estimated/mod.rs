@@ -448,7 +448,8 @@ impl Estimated {
         let half = first.len() / 2;
         let is_certain =
             first.len() <= CERTAIN || with_ties(first, half, tolerances) >= first.len();
-        let is_poor = !is_certain && (change > most_change || first.len() > 2 * self.most_events());
+        let is_poor = !is_certain
+            && (change > most_change || first.len() > self.most_events().saturating_mul(2));
         let settled = match is_poor {
             true => None,
             false if self.settles => {

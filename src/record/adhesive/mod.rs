@@ -10,7 +10,7 @@ use crate::adhesion::{
     Adhesion, AdhesiveBranch, AdhesiveBuilder, AdhesivePath, AdhesiveState, Trace,
 };
 use crate::surface::HeightMap;
-use crate::{Error, Grid, InfluenceKernel, KernelTable};
+use crate::{ContactTarget, Error, Grid, InfluenceKernel, KernelTable};
 
 /// How far numbers that follow from others may be from them, relative to the greatest of these.
 const SAME: f64 = 1e-9;
@@ -48,6 +48,8 @@ pub struct AdhesiveRecord {
     adhesion: Adhesion,
     states: AdhesiveBranch,
     trace: Trace,
+    /// Where the last branch is to end, if it has not.
+    pending: Option<Vec<ContactTarget>>,
 }
 
 impl AdhesiveRecord {
@@ -72,6 +74,7 @@ impl AdhesiveRecord {
             kernel: KernelRecord::of(problem.table()),
             adhesion: path.adhesion(),
             trace: path.trace(),
+            pending: path.pending().map(<[_]>::to_vec),
             states,
         }
         .checked()
@@ -121,7 +124,7 @@ impl AdhesiveRecord {
         &self.states
     }
 
-    /// The path at its last state, where it has ended: to turn around, to go on
+    /// The path at its last state: to go on to where its branch was to end, to turn around, to go on elsewhere
     /// ([`load_to`](AdhesivePath::load_to), [`unload`](AdhesivePath::unload)), and for
     /// [fields](AdhesivePath::fields_at) of its states.
     ///
@@ -155,10 +158,12 @@ impl AdhesiveRecord {
     ) -> Result<AdhesivePath, Error> {
         let builder = AdhesivePath::builder(&self.heights, kernel, self.adhesion);
         let builder = memory_budget.into_iter().fold(builder, AdhesiveBuilder::memory_budget);
+        let targets = self.pending.iter().flatten().copied();
+        let builder = targets.fold(builder, AdhesiveBuilder::until);
         let mut path = builder.build()?;
         self.kernel.check(path.problem().table())?;
         if let Some(last) = self.states.states().last() {
-            path.restore(self.trace.clone(), *last)?;
+            path.restore(self.trace.clone(), *last, self.pending.as_deref())?;
         }
         Ok(path)
     }

@@ -11,7 +11,7 @@ use super::{AdhesiveRecord, KernelRecord};
 use crate::adhesion::{
     Adhesion, AdhesiveEvent, AdhesiveState, Change, Direction, NodeState, Trace,
 };
-use crate::contact::ContactState;
+use crate::contact::{ContactState, ContactTarget};
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::io::write_whole;
 use crate::surface::HeightMap;
@@ -36,6 +36,9 @@ struct Parameters {
     cell: (f64, f64),
     kernel: KernelRecord,
     adhesion: Adhesion,
+    /// Where the last branch is to end, if it has not; records of before have ended.
+    #[serde(default)]
+    pending: Option<Vec<ContactTarget>>,
     units: String,
 }
 
@@ -157,6 +160,7 @@ impl AdhesiveRecord {
             cell: (self.grid.dx(), self.grid.dy()),
             kernel: self.kernel.clone(),
             adhesion: self.adhesion,
+            pending: self.pending.clone(),
             units: UNITS.to_string(),
         }
     }
@@ -245,6 +249,7 @@ impl AdhesiveRecord {
             heights: HeightMap::new(archive.matrix("heights")?)?,
             kernel: parameters.kernel,
             adhesion: parameters.adhesion,
+            pending: parameters.pending,
             states: states.into_iter().collect(),
             trace: Trace { changes, marks },
         }
