@@ -141,11 +141,21 @@ impl Grid {
     }
 
     /// The longer or the shorter of two lengths, one along x and one along y; a direction of one node does not count.
-    pub(crate) fn of_directions(&self, (x, y): (f64, f64), of: fn(f64, f64) -> f64) -> f64 {
+    pub(crate) fn of_directions<T>(&self, (x, y): (T, T), of: fn(T, T) -> T) -> T {
         match self.shape() {
             (_, 1) => x,
             (1, _) => y,
             _ => of(x, y),
+        }
+    }
+
+    /// The side of a profile, a grid of one row or one column; `None` for a map. One node is a row.
+    pub(crate) fn length_of_profile(&self) -> Option<f64> {
+        let (lx, ly) = self.sides();
+        match self.shape() {
+            (_, 1) => Some(lx),
+            (1, _) => Some(ly),
+            _ => None,
         }
     }
 

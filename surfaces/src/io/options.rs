@@ -87,8 +87,8 @@ impl ReadOptions {
         self
     }
 
-    /// The side along x \[m\], in place of what the file says. Cells are square unless
-    /// [`side_y`](Self::side_y) is given.
+    /// The side along x \[m\], in place of what the file says; of a single column its length along y. Cells are square
+    /// unless [`side_y`](Self::side_y) is given.
     pub fn side(mut self, metres: f64) -> Self {
         self.side = Some(metres);
         self
@@ -300,7 +300,9 @@ impl ReadOptions {
             })
             .transpose()
         };
-        let dx = given(self.side, nx, "side along x")?;
+        // Along a single column there is one length that anybody means.
+        let along = if nx == 1 && self.side_y.is_none() { ny } else { nx };
+        let dx = given(self.side, along, "side")?;
         let dy = given(self.side_y, ny, "side along y")?;
         if let Some(dx) = dx {
             return Ok(Some((dx, dy.unwrap_or(dx))));
@@ -383,6 +385,20 @@ fn parse(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of a profile, a side is its length, along whichever axis it runs.
+    #[test]
+    fn a_side_of_a_single_column_is_its_length() -> Result<(), Error> {
+        let cell = |shape: (usize, usize), options: &ReadOptions| {
+            let values = vec![0.0; shape.0 * shape.1];
+            options.cell(&mut Channel::in_metres(shape, values, None), Path::new("z.npy"))
+        };
+        let side = ReadOptions::new().side(2e-3);
+        assert_eq!(cell((1, 2000), &side)?, Some((1e-6, 1e-6)));
+        assert_eq!(cell((2000, 1), &side)?, Some((1e-6, 1e-6)));
+        assert_eq!(cell((1, 2000), &side.side_y(4e-3))?, Some((2e-3, 2e-6)));
+        Ok(())
+    }
 
     #[test]
     fn names_with_numbers_are_not_given_again() {

@@ -41,6 +41,10 @@ impl HeightMap {
         if nx == 0 || ny == 0 {
             return Err(Error::EmptyGrid { nx, ny });
         }
+        // Infinite ones may have overflown; missing are those that are NaN.
+        if heights.iter().all(|z| z.is_nan()) {
+            return Err(Error::NothingMeasured { nx, ny });
+        }
         Ok(Self { heights: all_finite(heights)? })
     }
 
@@ -224,7 +228,8 @@ fn mean_square_difference<'a>(
 ) -> f64 {
     let count = a.len().max(1);
     let sum: f64 = a.zip(b).map(|(a, b)| ((b - a) / step).powi(2)).sum();
-    sum / count as f64
+    // A sum of nothing is −0.
+    sum / count as f64 + 0.0
 }
 
 impl Surface for HeightMap {

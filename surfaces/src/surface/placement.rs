@@ -80,11 +80,6 @@ fn offsets(nodes: usize, cell: f64, center: Option<f64>) -> Vec<f64> {
 pub(super) fn all_finite(heights: DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     match heights.iter().position(|z| !z.is_finite()) {
         None => Ok(heights),
-        // Infinite ones may have overflown; missing are those that are NaN.
-        Some(_) if heights.iter().all(|z| z.is_nan()) => {
-            let (nx, ny) = heights.shape();
-            Err(Error::NothingMeasured { nx, ny })
-        }
         Some(node) => Err(Error::HeightNotFinite {
             ix: node % heights.nrows(),
             iy: node / heights.nrows(),

@@ -45,15 +45,21 @@ impl Band {
         Ok(())
     }
 
-    /// C(q)/C(0) at t = q/q_r: 1 below the roll-off, t^(−2(1+H)) above, 0 outside the band.
-    pub(super) fn shape(&self, t: f64) -> f64 {
+    /// C(q)/C(0) at t = q/q_r: 1 below the roll-off, t^(−`exponent`) above, 0 outside the band.
+    pub(super) fn shape(&self, t: f64, exponent: f64) -> f64 {
         if !(self.least()..=self.greatest()).contains(&t) {
             0.0
         } else if t <= 1.0 {
             1.0
         } else {
-            libm::pow(t, -2.0 * (1.0 + self.hurst))
+            libm::pow(t, -exponent)
         }
+    }
+
+    /// With which power of the wavevector the density falls on a grid: 2(1 + H), and 1 + 2H for profiles.
+    pub(super) fn exponent(&self, grid: &Grid) -> f64 {
+        let is_profile = grid.length_of_profile().is_some();
+        if is_profile { 1.0 + 2.0 * self.hurst } else { 2.0 * (1.0 + self.hurst) }
     }
 
     /// Greatest wave number that can be in the band along a direction of `nodes` nodes whose

@@ -36,6 +36,9 @@ use crate::{Error, Grid, Surface};
 /// cut-off wavelength λ_l, if there is one, also takes out q < q_l = 2π/λ_l. A wave whose length
 /// equals a cut-off is inside, with a relative slack of 10⁻¹² for rounding.
 ///
+/// On a grid of one row or one column C falls with $`q^{-(1+2H)}`$ instead, and $`B = \sqrt{2\pi C / L}`$: a profile,
+/// with the spectrum of a cut through a surface of the exponent H.
+///
 /// The mean height is 0, the heights are in metres, and x is the position of the node,
 /// [`Grid::position`]. The surface is periodic with the sides of the grid. Along a direction with
 /// a single node it is constant.

@@ -16,10 +16,12 @@ use crate::{Error, Grid};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
     band: Band,
+    /// With which power of the wavevector the density falls.
+    exponent: f64,
     /// Mean square height of a wave on the plateau, B² there.
     plateau: f64,
-    /// Nominal area of the grid.
-    area: f64,
+    /// Of the plane of wavevectors, or of their line, what belongs to one wave: (2π)²/A₀ or 2π/L.
+    of_wave: f64,
     /// Σ w (q/q_r)^2k C/C(0) over the waves for k = 0, 1, 2.
     sums: [f64; 3],
 }
@@ -33,6 +35,7 @@ impl Spectrum {
     pub(super) fn new(band: Band, amplitude: Amplitude, grid: &Grid) -> Result<Self, Error> {
         band.check_resolved(grid)?;
         let lattice = Lattice::new(grid, band.rolloff_wavelength);
+        let exponent = band.exponent(grid);
         let mut sums = [0.0; 3];
         for m in 0..=band.limit(grid.nx(), lattice.step_x) {
             let n_limit = band.limit(grid.ny(), lattice.step_y);
@@ -40,7 +43,7 @@ impl Spectrum {
             for n in -n_limit..=n_limit {
                 let weight = lattice.multiplicity(m, n);
                 let t = lattice.wave_number(m, n);
-                let share = band.shape(t);
+                let share = band.shape(t, exponent);
                 if weight == 0.0 || share == 0.0 {
                     continue;
                 }
@@ -58,21 +61,21 @@ impl Spectrum {
                 longest: band.long_cutoff_wavelength.unwrap_or(f64::INFINITY),
             });
         }
-        let area = grid.nominal_area();
+        let of_map = TAU * TAU / grid.nominal_area();
+        let of_wave = grid.length_of_profile().map_or(of_map, |length| TAU / length);
         let plateau = match amplitude {
             Amplitude::RmsHeight(rms) => rms * rms / sums[0],
             Amplitude::RmsGradient(rms) => {
                 let height = rms / band.rolloff();
                 height * height / sums[1]
             }
-            Amplitude::Prefactor(c0) => {
-                c0 * libm::pow(band.rolloff(), -2.0 * (1.0 + band.hurst)) * (TAU * TAU / area)
-            }
+            Amplitude::Prefactor(c0) => c0 * libm::pow(band.rolloff(), -exponent) * of_wave,
         };
         Ok(Self {
             band,
+            exponent,
             plateau: Error::require_positive("mean square height of a wave", plateau)?,
-            area,
+            of_wave,
             sums,
         })
     }
@@ -90,16 +93,19 @@ impl Spectrum {
     /// Eq. (23) of the paper, where the upper limit is misprinted and C₀ is left out. It is the
     /// two-dimensional density: $`S_q^2 = \int C \, \mathrm{d}^2 q`$, on a grid the sum of
     /// `C (2π)²/A₀` over its waves, q = 0 excluded.
+    ///
+    /// Of a profile, a grid of one row, it is the density in m³ with 1 + 2H in place of 2(1+H):
+    /// $`R_q^2 = \int C \, \mathrm{d} q`$, the sum of `C 2π/L` over waves of either sign.
     #[must_use]
     pub fn psd(&self, q: f64) -> f64 {
-        self.plateau * self.band.shape(q / self.band.rolloff()) * (self.area / (TAU * TAU))
+        let share = self.band.shape(q / self.band.rolloff(), self.exponent);
+        self.plateau * share / self.of_wave
     }
 
     /// The prefactor C₀ \[m^(2 − 2H)\].
     #[must_use]
     pub fn prefactor(&self) -> f64 {
-        let plateau = self.plateau * (self.area / (TAU * TAU));
-        plateau * libm::pow(self.band.rolloff(), 2.0 * (1.0 + self.band.hurst))
+        self.plateau / self.of_wave * libm::pow(self.band.rolloff(), self.exponent)
     }
 
     /// Root mean square height S_q \[m\].
@@ -140,9 +146,9 @@ impl Spectrum {
         &self.band
     }
 
-    /// Amplitude of a wave on the plateau \[m\].
-    pub(super) fn plateau_amplitude(&self) -> f64 {
-        self.plateau.sqrt()
+    /// Amplitude \[m\] of a wave at t = q/q_r, 0 outside the band.
+    pub(super) fn amplitude(&self, t: f64) -> f64 {
+        self.plateau.sqrt() * self.band.shape(t, self.exponent).sqrt()
     }
 }
 

@@ -22,7 +22,7 @@ pub struct ProfileParameters {
     pub ra: f64,
     /// Root mean square height Rq \[m\].
     pub rq: f64,
-    /// Maximum height Rz \[m\]: the mean over the sections, which are as long as the cut-off.
+    /// Maximum height Rz \[m\]: the mean over the sections, each as long as the cut-off.
     pub rz: f64,
     /// Total height Rt \[m\], from the lowest dale to the highest peak of all.
     pub rt: f64,
@@ -38,8 +38,8 @@ pub struct ProfileParameters {
 impl Topography {
     /// The roughness of a profile: of a surface of one row of nodes, without its tilt.
     ///
-    /// With a cut-off wavelength the waviness is taken off by the Gaussian filter, and half a cut-off at either end is
-    /// not evaluated, where the filter sees one side only.
+    /// With a cut-off wavelength the waviness is taken off by the Gaussian filter, and half a cut-off or more at either
+    /// end is not evaluated, where the filter sees one side only: what is left are whole sections.
     ///
     /// ```
     /// use asperity_surfaces::Grid;
@@ -64,8 +64,8 @@ impl Topography {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a surface of several rows, and for a cut-off of more than half the profile;
-    /// [`Error::NotPositive`] for one that is not positive and finite.
+    /// [`Error::OutOfRange`] for a surface of several rows, and for a cut-off of less than two steps or more than half
+    /// the profile; [`Error::NotPositive`] for one that is not positive and finite.
     pub fn profile_parameters(&self, cutoff: Option<f64>) -> Result<ProfileParameters, Error> {
         let (nx, ny) = self.grid().shape();
         Error::require("number of rows of a profile", ny as f64, ny == 1, "1")?;
@@ -76,13 +76,16 @@ impl Topography {
             Some(cutoff) => {
                 Error::require_positive("cut-off wavelength", cutoff)?;
                 let steps = cutoff / step;
-                let fits = 2.0 * steps <= nx as f64 * (1.0 + SLACK) && steps >= 1.0 - SLACK;
-                let expected = "at least 1, and at most half the profile";
-                Error::require("cut-off wavelength in steps", steps, fits, expected)?;
-                let nodes = steps.round();
-                let (nodes, ends) = (nodes as usize, (0.5 * nodes) as usize);
+                let fits = 2.0 * steps <= nx as f64 * (1.0 + SLACK) && steps >= 2.0 - SLACK;
+                let expected = "at least two steps and at most half the profile";
+                Error::require("cut-off wavelength in m", cutoff, fits, expected)?;
+                let section = steps.round() as usize;
+                let ends = section / 2;
+                let sections = ((nx - 2 * ends) / section).max(1);
+                let evaluated = (sections * section).min(nx - 2 * ends);
+                let first = (nx - evaluated) / 2;
                 let roughness = levelled.high_pass(cutoff, Filter::Gaussian)?;
-                (roughness.crop(ends..nx - ends, 0..1)?, nodes)
+                (roughness.crop(first..first + evaluated, 0..1)?, section)
             }
         };
         let map = profile.map();
@@ -235,13 +238,26 @@ mod tests {
         Ok(())
     }
 
+    /// Whole sections are evaluated, in the middle: a profile and its mirror image have the same Rz, a peak in it.
+    #[test]
+    fn sections_are_whole() -> Result<(), Error> {
+        let rough = |x: f64| 1e-6 * ((7.3 * x).sin() + if x == 1590.0 { 10.0 } else { 0.0 });
+        let surface = profile(1690, rough)?;
+        let found = surface.profile_parameters(Some(100e-6))?;
+        // Nodes 95 to 1594.
+        assert!((found.evaluation_length / 1.5e-3 - 1.0).abs() < 1e-12, "{found:?}");
+        let mirrored = surface.flip(crate::surface::Axis::X).profile_parameters(Some(100e-6))?;
+        assert!((found.rz / mirrored.rz - 1.0).abs() < 1e-9, "{found:?} {mirrored:?}");
+        Ok(())
+    }
+
     #[test]
     fn what_is_no_profile_is_refused() -> Result<(), Error> {
         let heights = DMatrix::from_fn(8, 8, |ix, iy| (ix + iy) as f64);
         let map = Topography::new(Grid::square(8, 1e-3)?, heights)?;
         assert!(matches!(map.profile_parameters(None), Err(Error::OutOfRange { value: 8.0, .. })));
         let short = profile(100, |x| x.sin())?;
-        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 51e-6, 0.1e-6] {
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 51e-6, 0.1e-6, 1.4e-6] {
             assert!(short.profile_parameters(Some(bad)).is_err(), "{bad}");
         }
         let flat = profile(100, |_| 1.0)?.profile_parameters(None)?;

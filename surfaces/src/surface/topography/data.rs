@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::surface::HeightMap;
+use crate::surface::placement::all_finite;
 use crate::{Error, Grid, Surface};
 
 /// Heights \[m\] of a surface on the grid that they belong to: a [`HeightMap`] that knows its lengths.
@@ -51,9 +52,9 @@ impl Topography {
         Self::new(grid, surface.heights(&grid)?)
     }
 
-    /// Other heights on the same grid.
+    /// Other heights on the same grid, if none has overflown.
     pub(super) fn with_heights(&self, heights: DMatrix<f64>) -> Result<Self, Error> {
-        Self::new(self.grid, heights)
+        Ok(Self { grid: self.grid, map: HeightMap::of_finite(all_finite(heights)?) })
     }
 
     /// The grid.

@@ -259,6 +259,11 @@ mod tests {
         let map = Topography::new(Grid::new(2, 1, 1e-3, 1.0)?, heights)?;
         let refused = map.level(Trend::Plane);
         assert!(matches!(refused, Err(Error::HeightNotFinite { .. })));
+        // As well where nothing is left that is a number.
+        let square = DMatrix::from_fn(8, 8, |ix, iy| f64::MAX * [1.0, -1.0][(ix + iy) % 2]);
+        let map = Topography::new(Grid::square(8, 1e-3)?, square)?;
+        let refused = map.level(Trend::Quadratic);
+        assert!(matches!(refused, Err(Error::HeightNotFinite { .. })), "{refused:?}");
         Ok(())
     }
 }

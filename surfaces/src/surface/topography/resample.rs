@@ -5,7 +5,8 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::Topography;
-use crate::surface::turns;
+use crate::surface::placement::all_finite;
+use crate::surface::{HeightMap, turns};
 use crate::{Error, Grid};
 
 /// How heights between nodes follow from those at nodes.
@@ -50,7 +51,7 @@ impl Topography {
         let mean = self.map.mean_height();
         let half = along_x(&self.heights().add_scalar(-mean), nx).transpose();
         let heights = along_x(&half, ny).transpose().add_scalar(mean);
-        Self::new(grid, heights)
+        Ok(Self { grid, map: HeightMap::of_finite(all_finite(heights)?) })
     }
 }
 

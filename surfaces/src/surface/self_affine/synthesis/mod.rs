@@ -36,7 +36,6 @@ pub(super) fn heights(spectrum: &Spectrum, seed: u64, grid: &Grid) -> DMatrix<f6
     let lattice = Lattice::new(grid, band.rolloff_wavelength);
     let m_limit = band.limit(nx, lattice.step_x);
     let n_limit = band.limit(ny, lattice.step_y);
-    let plateau = spectrum.plateau_amplitude();
     let mut scratch = Vec::new();
 
     // Along y: one transform for every m >= 0 in the band. The result is stored with m fastest.
@@ -49,11 +48,10 @@ pub(super) fn heights(spectrum: &Spectrum, seed: u64, grid: &Grid) -> DMatrix<f6
         waves.fill(Complex64::ZERO);
         for (n, phase) in phases(seed, m).take_while(|(n, _)| *n <= n_limit) {
             let multiplicity = lattice.multiplicity(m, n);
-            let share = band.shape(lattice.wave_number(m, n));
-            if multiplicity == 0.0 || share == 0.0 {
+            let amplitude = spectrum.amplitude(lattice.wave_number(m, n));
+            if multiplicity == 0.0 || amplitude == 0.0 {
                 continue;
             }
-            let amplitude = plateau * share.sqrt();
             if multiplicity == 1.0 {
                 // A wave that is its own conjugate is real: its phase can only be 0 or π.
                 let sign = if phase < 0.5 { 1.0 } else { -1.0 };

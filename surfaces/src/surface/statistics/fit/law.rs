@@ -118,8 +118,9 @@ impl Line {
     /// minimum.
     fn fit(rings: &[Ring], rolloff: f64) -> Result<Self, Error> {
         let mut line = Self::first_guess(rings, rolloff);
-        let mut change = f64::INFINITY;
-        for _ in 0..STEPS {
+        let (mut change, mut steps) = (f64::INFINITY, 0);
+        while steps < STEPS {
+            steps += 1;
             let mut hessian = Matrix2::zeros();
             let mut slope = Vector2::zeros();
             for ring in rings {
@@ -150,7 +151,7 @@ impl Line {
                 return Ok(line);
             }
         }
-        Err(Error::NoConvergence { residual: change, tolerance: 1e-11, iterations: STEPS })
+        Err(Error::NoConvergence { residual: change, tolerance: 1e-11, iterations: steps })
     }
 
     /// The power law through the mean logarithms.

@@ -68,8 +68,7 @@ pub struct SelfAffineFit {
     pub short_cutoff_wavelength: Option<Estimate>,
     /// Long cut-off wavelength λ_l \[m\]; `None` if the longest waves of the map have power.
     pub long_cutoff_wavelength: Option<Estimate>,
-    /// Prefactor C₀ \[m^(2 − 2H), of a profile m^(3 − 2H)\] in the normalisation of
-    /// [`Spectrum`](crate::surface::Spectrum).
+    /// Prefactor C₀ \[m^(2 − 2H)\] in the normalisation of [`Spectrum`](crate::surface::Spectrum).
     pub prefactor: f64,
     /// Mean square of the relative residuals, weighted by the number of independent waves: 1 for a surface whose
     /// amplitudes are random (Gaussian), and greater than 1 where the spectrum is not of this form. Of a surface like
@@ -158,9 +157,11 @@ impl Topography {
             place_between(&bins_with_power[fall.start - 1], above)
         });
         let long = (first > 0).then(|| place_between(&bins[first - 1], &bins[first]));
-        let (nx, ny) = self.grid().shape();
-        // Of 2(1 + H), or of 1 + 2H.
-        let beside = if nx.min(ny) > 1 { 1.0 } else { 0.5 };
+        // The exponent is 2(1 + H), or 1 + 2H; and the density of a profile is one along a line, without the width.
+        let (beside, density) = match self.grid().length_of_profile() {
+            None => (1.0, greatest),
+            Some(length) => (0.5, greatest * TAU * length / self.grid().nominal_area()),
+        };
         Ok(SelfAffineFit {
             hurst: Estimate {
                 value: 0.5 * law.exponent - beside,
@@ -172,13 +173,14 @@ impl Topography {
             }),
             short_cutoff_wavelength: short,
             long_cutoff_wavelength: long,
-            prefactor: prefactor(&law, greatest),
+            prefactor: prefactor(&law, density),
             dispersion: law.dispersion,
         })
     }
 }
 
-/// C₀ from the plateau C₀ q_r^(−2(1+H)), or of a profile with 1 + 2H, whose density is (2π)² times that of `Spectrum`.
+/// C₀ from the plateau C₀ q_r^(−2(1+H)), or of a profile with 1 + 2H, whose density is (2π)² times that of `Spectrum`
+/// in these units.
 fn prefactor(law: &Law, unit: f64) -> f64 {
     let logarithm = law.plateau + law.exponent * law.rolloff + libm::log(unit);
     libm::exp(logarithm) / (TAU * TAU)
