@@ -216,13 +216,8 @@ fn sample<DB: DrawingBackend>(
 ) -> Drawn<DB> {
     let stroke = series.colour.stroke_width(2 * FINE as u32);
     match series.style {
-        Style::Line => area.draw(&PathElement::new(points, stroke)),
-        Style::Dashed => {
-            for dash in dashes(&points) {
-                area.draw(&PathElement::new(dash, stroke))?;
-            }
-            Ok(())
-        }
+        Style::Line => draw_line(area, &points, stroke),
+        Style::Dashed => dashes(&points).iter().try_for_each(|dash| draw_line(area, dash, stroke)),
         Style::Dots => {
             for point in points {
                 area.draw(&Circle::new(point, 3 * FINE, series.colour.filled()))?;
@@ -230,6 +225,26 @@ fn sample<DB: DrawingBackend>(
             Ok(())
         }
     }
+}
+
+/// Draws a line in pieces that end where it turns back: on such a corner plotters draws a spike without end.
+fn draw_line<DB: DrawingBackend>(
+    area: &Area<DB>,
+    points: &[(i32, i32)],
+    stroke: ShapeStyle,
+) -> Drawn<DB> {
+    let mut first = 0;
+    for (k, three) in points.windows(3).enumerate() {
+        let way = |from: (i32, i32), to: (i32, i32)| {
+            [i64::from(to.0) - i64::from(from.0), i64::from(to.1) - i64::from(from.1)]
+        };
+        let ([ax, ay], [bx, by]) = (way(three[0], three[1]), way(three[1], three[2]));
+        if ax * bx + ay * by < 0 {
+            area.draw(&PathElement::new(&points[first..k + 2], stroke))?;
+            first = k + 1;
+        }
+    }
+    area.draw(&PathElement::new(&points[first..], stroke))
 }
 
 /// Cuts a line into dashes.

@@ -70,7 +70,8 @@ pub(crate) struct Options {
     memory_budget: Option<usize>,
 
     /// Print one JSON object instead: states, one for each load that was solved for, with the columns of load.csv,
-    /// iterations and seconds (SI units; null where there is no number)
+    /// iterations and seconds (SI units; null where there is no number); load.csv and pictures are written only if
+    /// --out is given
     #[arg(long)]
     json: bool,
 
@@ -78,9 +79,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "DIR")]
     save: Option<PathBuf>,
 
-    /// Directory for load.csv and the pictures, created if it does not exist
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
+    /// Directory for load.csv and the pictures, created if it does not exist [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 /// At least one.
@@ -113,9 +114,16 @@ impl Loads {
 }
 
 impl Options {
+    /// Where the table and the pictures go, if anywhere.
+    fn directory(&self) -> Option<&Path> {
+        outcome::directory(self.out.as_deref(), self.json)
+    }
+
     /// `Ok` if the surface is none of the files that are written.
     fn check_surface(&self, asked: &[At]) -> Result<(), Failure> {
-        outcome::check_input(&self.surface, &self.out, &["load.csv"])?;
+        if let Some(directory) = self.directory() {
+            outcome::check_input(&self.surface, directory, &["load.csv"])?;
+        }
         let Some(directory) = &self.save else { return Ok(()) };
         let fields =
             asked.iter().flat_map(|at| FIELDS.map(|name| Format::Npy.file(name, &at.ending())));
@@ -178,11 +186,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         solver.bytes() / 1_000_000
     );
     panel::register_font()?;
-    for directory in options.save.iter().chain([&options.out]) {
-        std::fs::create_dir_all(directory).map_err(|error| {
-            Failure::new(format!("cannot create {}", directory.display()), error)
-        })?;
-    }
+    let directory = options.directory();
+    options.save.as_deref().into_iter().chain(directory).try_for_each(outcome::create_folder)?;
     let mut outcome = Outcome::default();
     let names = COLUMNS.into_iter().chain(conductions.iter().map(|(name, _)| *name));
     let mut table = format!("{}\n", names.collect::<Vec<_>>().join(","));
@@ -220,16 +225,18 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         });
         match solved {
             Ok(solution) => {
-                let picture = options.out.join(format!("contact_map{}.png", at.ending()));
-                let FixedLoadSolution { contact, fields, .. } = &solution;
-                outcome.written(draw_map(
-                    &grid,
-                    contact,
-                    &fields.pressure,
-                    &fields.contact_map,
-                    contact.plastic.map(|_| &fields.yielded_map),
-                    &picture,
-                ));
+                if let Some(directory) = directory {
+                    let picture = directory.join(format!("contact_map{}.png", at.ending()));
+                    let FixedLoadSolution { contact, fields, .. } = &solution;
+                    outcome.written(draw_map(
+                        &grid,
+                        contact,
+                        &fields.pressure,
+                        &fields.contact_map,
+                        contact.plastic.map(|_| &fields.yielded_map),
+                        &picture,
+                    ));
+                }
                 if let Some(directory) = &options.save {
                     outcome.all_written(save(directory, &solution, at));
                 }
@@ -240,7 +247,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     if !rows.is_empty() {
-        outcome.written(outcome::write(&options.out.join("load.csv"), table));
+        if let Some(directory) = directory {
+            outcome.written(outcome::write(&directory.join("load.csv"), table));
+        }
         say!();
         state_table::print(&rows, &grid, options.periodic);
     }

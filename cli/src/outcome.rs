@@ -141,6 +141,16 @@ pub fn directory(given: Option<&Path>, json: bool) -> Option<&Path> {
     given.or_else(|| (!json).then(|| Path::new("out")))
 }
 
+/// Makes a folder for files unless it is there.
+///
+/// # Errors
+///
+/// If it cannot be made.
+pub fn create_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::new(format!("cannot create {}", folder.display()), error))
+}
+
 /// Whether two names are of one file that is there.
 #[must_use]
 pub fn is_same(one: &Path, other: &Path) -> bool {

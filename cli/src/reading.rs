@@ -16,7 +16,7 @@ use crate::values::{LENGTH, layout, unit};
 /// What a file does not say of itself, and how its surface is prepared.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Reading {
-    /// Side of the surface along x, in place of that in the file
+    /// Side of the surface along x, of a single column along y, in place of that in the file
     #[arg(long, value_name = "METRES", value_parser = LENGTH.positive())]
     pub(crate) side: Option<f64>,
 

@@ -79,7 +79,10 @@ fn shown(units: Units, si_unit: &str, greatest: f64) -> (f64, String) {
             let (unit, name) = area_unit(greatest);
             (unit, name.to_string())
         }
-        _ if is_power_of_length(si_unit) || si_unit == "cells" => (1.0, si_unit.to_string()),
+        // Nobody counts in megaseconds.
+        _ if is_power_of_length(si_unit) || ["cells", "s"].contains(&si_unit) => {
+            (1.0, si_unit.to_string())
+        }
         _ => prefixed(si_unit, greatest),
     }
 }

@@ -116,6 +116,11 @@ fn a_rubber_leaks_less_and_less() -> Done {
     }
     let json = answer(&folder.0, &line)?;
     assert_eq!(json["leaks"].as_array().map(Vec::len), Some(rows.len()));
+    // More pressure than that of the contact would open the gap.
+    let warned = json["warnings"][0].as_str().ok_or("no warning")?;
+    assert!(warned.contains("would open the gap"), "{warned}");
+    let gentle = answer(&folder.0, &line.replace("--pressure-drop 1e-3", "--pressure-drop 1e-6"))?;
+    assert_eq!(gentle["warnings"].as_array().map(Vec::len), Some(0));
     // An approach that is held is contact that is held.
     let held = format!("creep path.npz {SERIES} --approach 1e-4 {fluid} --out held");
     run(&folder.0, &held)?;

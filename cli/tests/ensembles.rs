@@ -188,7 +188,7 @@ fn lines_of_many_paths_name_their_seeds() -> Done {
     for (k, options) in
         ["--max-area-fraction 0.1", "--work-of-adhesion 0.05 --max-load 10"].into_iter().enumerate()
     {
-        let line = format!("path --nodes 16 {options} --json --out runs_{k}");
+        let line = format!("path --nodes 16 --short-cutoff 1.25mm {options} --json --out runs_{k}");
         let done = output(&folder.0, &format!("{line} --seeds 4..6"))?;
         assert!(done.status.success(), "{}", said(&done));
         let lines = String::from_utf8(done.stdout.clone())?;

@@ -94,6 +94,7 @@ fn a_path_without_load_is_told() -> Result<(), Box<dyn Error>> {
     let object: serde_json::Value = serde_json::from_slice(&done.stdout)?;
     assert_eq!((&object["states"], &object["patches"]), (&1.into(), &1.into()), "{object}");
     assert_eq!(object["state"]["load"], 0.0);
+    assert!(!folder.join("out/patches.csv").exists(), "an object alone was asked for");
     assert!(object["seals_x"].is_null() && object["channel_x"].is_object(), "{object}");
     let said = String::from_utf8(asperity(&folder, &["patches", name])?.stdout)?;
     assert!(said.contains("no node has touched under load"), "{said}");

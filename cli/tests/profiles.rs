@@ -101,7 +101,7 @@ fn the_roughness_of_a_profile_is_told() -> Done {
     let column = DMatrix::from_fn(1, 4000, |_, iy| amplitude * (TAU * iy as f64 / 100.0).sin());
     write_npy(folder.join("column.npy"), &column)?;
     let of_x = answer(&folder.0, "info sine.csv --cutoff 0.25mm")?;
-    let of_y = answer(&folder.0, "info column.npy --side 0.25um --cutoff 0.25mm")?;
+    let of_y = answer(&folder.0, "info column.npy --side 1mm --cutoff 0.25mm")?;
     assert!(of_y["texture"].is_null());
     for name in ["ra", "rz", "rsm", "evaluation_length"] {
         let [found, expected] = [&of_y, &of_x].map(|told| told["profile"][name].as_f64());

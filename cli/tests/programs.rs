@@ -62,6 +62,13 @@ fn every_command_answers_programs() -> Done {
     );
     let area = &gathered["columns"]["contact_area_fraction"]["mean"];
     assert!(area[0].as_f64() < area[4].as_f64(), "{gathered}");
+    // The files of paths, which take long, and no others.
+    let files = ["out/path.csv", "out/load.csv", "out/patches.csv", "many/gather.csv"];
+    assert_eq!(files.map(|name| folder.join(name).exists()), [true, false, false, false]);
+    run(folder, &format!("{line} --out there"))?;
+    assert!(
+        folder.join("there/load.csv").is_file() && folder.join("there").read_dir()?.count() == 3
+    );
     Ok(())
 }
 

@@ -249,6 +249,27 @@ fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<
     Ok(process.wait_with_output()?)
 }
 
+/// A record is replaced by a path of its own surface, and not by that of another one.
+#[test]
+fn a_record_of_another_surface_is_kept() -> Done {
+    let folder = Scratch::new("records-kept")?;
+    let path = "path --nodes 16 --record path.npz --max-area-fraction";
+    printed(&folder.0, &format!("{path} 0.1"))?;
+    printed(&folder.0, &format!("{path} 0.2 --work-of-adhesion 0.05"))?;
+    printed(&folder.0, &format!("{path} 0.3"))?;
+    let before = fs::read(folder.join("path.npz"))?;
+    for other in ["--seed 2", "--side 5mm", "--nodes 32"] {
+        let line = format!("{path} 0.1 {other}").replace("--nodes 16 ", "");
+        let line = if other.contains("nodes") { line } else { format!("{line} --nodes 16") };
+        is_refused(&output(&folder.0, &line)?, &["path.npz", "another surface", "--record"]);
+    }
+    printed(&folder.0, "path --nodes 16 --seed 2 --record other.npz --max-area-fraction 0.1")?;
+    let onto = "path --resume other.npz --record path.npz --max-area-fraction 0.2";
+    is_refused(&output(&folder.0, onto)?, &["path.npz", "another surface"]);
+    assert_eq!(fs::read(folder.join("path.npz"))?, before);
+    Ok(())
+}
+
 /// Files that a path does not write again are said to be of an earlier one.
 #[test]
 fn files_of_an_earlier_path_are_named() -> Done {

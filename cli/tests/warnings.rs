@@ -81,7 +81,7 @@ fn peaks_of_the_border_are_said_everywhere() -> Done {
     Ok(())
 }
 
-/// The area of 12 nodes is some 25 % too large.
+/// The area of 12 nodes may be 25 % too large.
 #[test]
 fn few_nodes_of_one_patch_are_said_everywhere() -> Done {
     let folder = with_ball("few")?;

@@ -5,18 +5,21 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use asperity::Error;
 use asperity::creep::CreepState;
 use asperity::leak::{Leak, Seal};
 use asperity::record::LoadingRecord;
+use asperity::surface::Axis as Along;
+use asperity::{Error, Warning};
 use asperity_cli::axis::Axis;
-use asperity_cli::chart::{self, BLUE, Chart, Corner, Series, Style};
+use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, Series, Style};
 use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::{say, units};
 use serde_json::{Value, json};
 
 use super::followed::Followed;
+use crate::advice;
+use crate::passages::Passage;
 
 /// About as many states as have their leak computed, the first and the last among them.
 const STATES: usize = 40;
@@ -51,6 +54,13 @@ impl Leaks {
         });
         let leaks = leaks.collect::<Result<Vec<_>, _>>().map_err(failed)?;
         Ok(Self { seal, leaks })
+    }
+
+    /// That the fluid would open the gap.
+    pub(super) fn warning(&self, nominal_area: f64) -> Option<String> {
+        let pressures = self.leaks.iter().map(|(state, _)| state.load / nominal_area);
+        let found = Warning::of_pressure_drop(self.seal.pressure_drop(), pressures);
+        found.as_ref().map(advice::told)
     }
 
     pub(super) fn print(&self) {
@@ -99,8 +109,16 @@ impl Leaks {
         outcome::write(&directory.join("leak_over_time.csv"), lines)
     }
 
-    /// The leak over the logarithm of time, up to where nothing leaks; `None` without two times to draw.
-    pub(super) fn draw(&self, directory: &Path) -> Option<Result<PathBuf, Failure>> {
+    /// The leak over the logarithm of time, up to where nothing leaks, and when the last channel closes; `None` without
+    /// two times to draw.
+    pub(super) fn draw(
+        &self,
+        passages: &[Passage<f64>],
+        directory: &Path,
+    ) -> Option<Result<PathBuf, Failure>> {
+        let seals = if self.seal.along() == Along::X { "seals_x" } else { "seals_y" };
+        let closing = passages.iter().find(|passage| passage.key == seals);
+        let closing = closing.and_then(|passage| passage.at).filter(|time| *time > 0.0);
         let points = self.leaks.iter().map(|(state, leak_rate)| (state.time, *leak_rate));
         let points: Vec<(f64, f64)> =
             points.filter(|(time, leak)| *time > 0.0 && *leak > 0.0).collect();
@@ -110,11 +128,16 @@ impl Leaks {
         }
         let most = points.iter().map(|point| point.1).fold(0.0, f64::max);
         let least = points.iter().map(|point| point.1).fold(most, f64::min);
+        let mark = closing.map(|time| {
+            let line = [(time, least), (time, most)];
+            Series::new("the last channel closes", GREY, Style::Dashed, line)
+        });
+        let to = closing.map_or(to, |time| time.max(to));
         let chart = Chart {
             title: "leak rate".to_string(),
             x: Axis::plain_logarithmic("time [s]", from, to),
             y: Axis::logarithmic("leak rate", "m³/s", least, most).with_room(0.04, 0.06),
-            series: vec![Series::new("", BLUE, Style::Line, points)],
+            series: mark.into_iter().chain([Series::new("", BLUE, Style::Line, points)]).collect(),
             legend: Corner::BottomLeft,
         };
         Some(chart::draw(&[chart], 1, &directory.join("leak_over_time.png")))

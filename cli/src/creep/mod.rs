@@ -52,17 +52,20 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Some(fluid) => Some(Leaks::new(&followed, &record, fluid.seal()?)?),
         None => None,
     };
+    let area = record.grid().nominal_area();
+    let warning = leaks.as_ref().and_then(|leaks| leaks.warning(area));
     if options.json {
-        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref(), leaks.as_ref()));
+        let of_leaks = (leaks.as_ref(), warning.as_deref());
+        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref(), of_leaks));
     }
     words::print(options, &task, &followed, &passages, sweep.as_ref());
     leaks.iter().for_each(Leaks::print);
+    warning.iter().for_each(speech::warn);
     let Some(directory) = directory else {
         return followed.whole(&task, &options.record);
     };
     panel::register_font()?;
-    std::fs::create_dir_all(directory)
-        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
+    outcome::create_folder(directory)?;
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
     let has_corners = options.history.is_some();
@@ -72,7 +75,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     if let Some(leaks) = &leaks {
         outcome.written(leaks.write(directory));
-        leaks.draw(directory).into_iter().for_each(|drawn| outcome.written(drawn));
+        leaks.draw(&passages, directory).into_iter().for_each(|drawn| outcome.written(drawn));
     }
     if let Some(Ok(sweep)) = &sweep {
         outcome.written(sweep.write(&directory.join("creep_cycles.csv")));

@@ -15,7 +15,7 @@ pub(super) fn object(
     followed: &Followed,
     passages: &[Passage<f64>],
     sweep: Option<&Result<Sweep, Error>>,
-    leaks: Option<&Leaks>,
+    (leaks, warning): (Option<&Leaks>, Option<&str>),
 ) -> Value {
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| {
@@ -60,5 +60,6 @@ pub(super) fn object(
     if let Some(leaks) = leaks {
         put("leaks", leaks.object());
     }
+    put("warnings", warning.into_iter().collect());
     Value::Object(object)
 }

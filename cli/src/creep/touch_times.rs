@@ -26,7 +26,8 @@ pub(super) fn draw(
         }
     }
     let touched = times.iter().filter(|time| !time.is_nan()).count();
-    // What has touched at once has no place on a logarithmic scale: it is as light as its end.
+    // What has touched at once has no place on a logarithmic scale: it has the colour of its beginning.
+    let at_once = times.iter().filter(|time| **time <= 0.0).count();
     let later = || times.iter().copied().filter(|time| *time > 0.0);
     let (first, last) = (later().fold(f64::INFINITY, f64::min), later().fold(0.0, f64::max));
     let first = first.max(1e-6 * last);
@@ -35,7 +36,7 @@ pub(super) fn draw(
     }
     let values = times.map(|time| if time.is_nan() { time } else { time.max(first) });
     let caption = format!(
-        "{touched} of {} touched, the last after {}",
+        "{touched} of {} touched, {at_once} at once, the last after {}",
         counted(grid.nodes(), "node"),
         units::time(last)
     );

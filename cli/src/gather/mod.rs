@@ -38,7 +38,7 @@ pub(crate) struct Options {
     loads: usize,
 
     /// Print one JSON object instead: paths, load, and mean and std of each column at each load (null where there is
-    /// none)
+    /// none); files are written only if --out is given
     #[arg(long)]
     json: bool,
 
@@ -74,9 +74,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         answer!("{}", object(&rows, tables.len()));
     }
-    let out = options.out.as_ref().unwrap_or(&options.directory);
-    fs::create_dir_all(out)
-        .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
+    let beside = (!options.json).then_some(&options.directory);
+    let Some(out) = options.out.as_ref().or(beside) else { return Ok(()) };
+    outcome::create_folder(out)?;
     panel::register_font()?;
     let mut outcome = Outcome::default();
     outcome.written(write(&rows, &out.join("gather.csv")));

@@ -27,6 +27,10 @@ use summary::Whole;
 /// Greatest Hurst exponent that a fit is told with: above 1, but for its error, a map is not self-affine.
 const HIGHEST_HURST: f64 = 1.2;
 
+/// Greatest dispersion that a fit is told with. It is 1 of a random surface, below 10 of most measured ones, and above
+/// of steps, lays and scratches, to which a power law says nothing.
+const FARTHEST: f64 = 10.0;
+
 /// Describe the file of an instrument: size, units, missing nodes, roughness, pictures, and warnings of what looks
 /// wrong
 ///
@@ -77,8 +81,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return Ok(());
     };
     panel::register_font()?;
-    std::fs::create_dir_all(directory)
-        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
+    outcome::create_folder(directory)?;
     let mut outcome = Outcome::default();
     outcome.written(picture::map(&whole, directory));
     outcome.all_written(picture::statistics(&whole, directory));
@@ -282,19 +285,30 @@ fn print_profile(profile: &ProfileParameters) {
     let length = |value: f64| quantity(value, "m", 4);
     let (letter, of) = match profile.cutoff {
         Some(cutoff) => ("R", format!("roughness, λc {}", length(cutoff))),
-        None => ("P", "primary profile; --cutoff 0.8mm for R-parameters".to_string()),
+        None => ("P", format!("primary profile{}", advised_cutoff(profile.evaluation_length))),
     };
     let spacing = profile.rsm.map_or_else(|| "none".to_string(), length);
+    // A line has none.
+    let shape = match profile.rsk.is_finite() {
+        true => format!(", {letter}sk {:.3}, {letter}ku {:.3}", profile.rsk, profile.rku),
+        false => String::new(),
+    };
     say!(
-        "profile       {letter}a {}, {letter}q {}, {letter}z {}, {letter}t {}, {letter}Sm {spacing}, {letter}sk {:.3}, {letter}ku {:.3}",
+        "profile       {letter}a {}, {letter}q {}, {letter}z {}, {letter}t {}, {letter}Sm {spacing}{shape}",
         length(profile.ra),
         length(profile.rq),
         length(profile.rz),
-        length(profile.rt),
-        profile.rsk,
-        profile.rku
+        length(profile.rt)
     );
     say!("              ISO 21920: {of}, evaluated on {}", length(profile.evaluation_length));
+}
+
+/// The longest cut-off of ISO 21920 of which a profile has five sections and a half at either end, if it has any.
+fn advised_cutoff(length: f64) -> String {
+    let millimetres = [8.0, 2.5, 0.8, 0.25, 0.08];
+    let fits = |cutoff: &&f64| 6.0 * **cutoff <= 1e3 * length * (1.0 + 1e-9);
+    let advised = millimetres.iter().find(fits);
+    advised.map_or_else(String::new, |cutoff| format!("; --cutoff {cutoff}mm for R-parameters"))
 }
 
 /// The self-affine spectrum that fits.
@@ -307,7 +321,7 @@ fn spectrum(levelled: &Topography) {
             estimate
                 .map_or_else(String::new, |estimate| format!(", {name} {}", length(estimate.value)))
         };
-        if (0.0..=HIGHEST_HURST).contains(&fit.hurst.value) {
+        if (0.0..=HIGHEST_HURST).contains(&fit.hurst.value) && fit.dispersion < FARTHEST {
             say!(
                 "spectrum      Hurst exponent {:.2} ± {:.2}{}{}",
                 fit.hurst.value,

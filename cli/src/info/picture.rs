@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use asperity::patches::{Bins, Histogram};
-use asperity::surface::{self, RadialBins, Topography, Trend, Window};
+use asperity::surface::{RadialBins, Topography, Trend, Window};
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, Series, Style};
 use asperity_cli::field_map::{FieldMap, Scale};
@@ -92,12 +92,14 @@ fn distribution(whole: &Whole) -> Option<Chart> {
 fn spectrum(levelled: &Topography) -> Option<Chart> {
     let windowed = levelled.window(Window::Hann).ok()?;
     // That of a profile does not depend on how wide its cells are said to be.
-    let (name, unit, bins) = match windowed.grid().shape() {
-        (_, 1) => ("power spectrum", "m³", windowed.psd_along(surface::Axis::X)),
-        (1, _) => ("power spectrum", "m³", windowed.psd_along(surface::Axis::Y)),
-        _ => ("radial power spectrum", "m⁴", windowed.radial_psd(&RadialBins::PerDecade(20)).ok()?),
+    let (lx, ly) = windowed.grid().sides();
+    let (name, unit, across) = match windowed.grid().shape() {
+        (_, 1) => ("power spectrum", "m³", ly),
+        (1, _) => ("power spectrum", "m³", lx),
+        _ => ("radial power spectrum", "m⁴", 1.0),
     };
-    let points = bins.iter().map(|bin| (bin.wavevector, bin.density));
+    let bins = windowed.radial_psd(&RadialBins::PerDecade(20)).ok()?;
+    let points = bins.iter().map(|bin| (bin.wavevector, bin.density / across));
     let points: Vec<(f64, f64)> = points.filter(|(q, c)| *q > 0.0 && *c > 0.0).collect();
     let ends = |values: &dyn Fn(&(f64, f64)) -> f64| {
         let least = points.iter().map(values).reduce(f64::min)?;

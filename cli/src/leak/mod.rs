@@ -1,6 +1,6 @@
 //! `asperity leak`: how much of a fluid leaks through the gap along a recorded path.
 //!
-//! Prints the leak rate at states of the path, or one document of JSON, and writes `leak.csv`, `leak.png`, and for each
+//! Prints the leak rate at states of the path, or one JSON object, and writes `leak.csv`, `leak.png`, and for each
 //! load a map of the fluid pressure and one of the flux.
 
 mod charts;
@@ -15,7 +15,7 @@ use asperity::leak::{Leak, LeakCurve, Seal};
 use asperity::record::LoadingRecord;
 use asperity::{LoadingPath, LoadingState, Warning};
 use asperity_cli::number::quantity;
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 use clap::Args;
 
@@ -53,14 +53,14 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 40)]
     states: usize,
 
-    /// Print one document of JSON and nothing else: the last of the loads, or of the states, and all of them in
-    /// `states`
+    /// Print one JSON object instead: the last of the loads, or of the states, and all of them in `states`; files are
+    /// written only if --out is given
     #[arg(long)]
     json: bool,
 
-    /// Directory for the files, created if it does not exist
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
+    /// Directory for the files, created if it does not exist [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 /// A record, its path, and what leaks.
@@ -122,9 +122,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut work = Work::new(options)?;
     let mut drawn = work.states(&options.load)?;
     panel::register_font()?;
-    let out = &options.out;
-    std::fs::create_dir_all(out)
-        .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
+    let directory = outcome::directory(options.out.as_deref(), options.json);
+    directory.map_or(Ok(()), outcome::create_folder)?;
     words::print_seal(&work.record, &work.seal);
 
     let mut outcome = Outcome::default();
@@ -135,9 +134,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         documents.extend(curve.points.iter().map(words::point));
         words::print_curve(&curve, &work.record, &work.seal);
         pressures.extend(curve.points.iter().map(|point| point.state.contact.mean_pressure()));
-        outcome.written(table::write(&curve, &out.join("leak.csv")));
-        outcome.all_written(charts::draw(&curve, &out.join("leak.png")));
-        if options.load.is_empty() {
+        if let Some(out) = directory {
+            outcome.written(table::write(&curve, &out.join("leak.csv")));
+            outcome.all_written(charts::draw(&curve, &out.join("leak.png")));
+        }
+        if options.load.is_empty() && directory.is_some() {
             drawn.extend(work.half_closed(&curve));
         }
     }
@@ -149,7 +150,15 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
                     pressures.push(state.contact.mean_pressure());
                     documents.push(words::leak(state, &leak));
                 }
-                outcome.all_written(maps::draw(&work.record, (state, &leak), &work.seal, (out, k)));
+                if let Some(out) = directory {
+                    let place = (out, k);
+                    outcome.all_written(maps::draw(
+                        &work.record,
+                        (state, &leak),
+                        &work.seal,
+                        place,
+                    ));
+                }
             }
             // What was found before is not lost.
             Err(failure) => outcome.note(Err(failure)),
@@ -159,7 +168,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let warning = warning.as_ref().map(advice::told);
     warning.iter().for_each(speech::warn);
     if options.json
-        && let Some(document) = words::document(documents, warning)
+        && let Some(document) = words::document(documents, &work.seal, warning)
     {
         answer!("{document}");
     }

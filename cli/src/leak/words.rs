@@ -4,7 +4,7 @@ use asperity::leak::{CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal};
 use asperity::record::LoadingRecord;
 use asperity::surface::Axis;
 use asperity::{Boundary, LoadingState};
-use asperity_cli::number::{counted, quantity, scientific};
+use asperity_cli::number::{counted, quantity, scientific, significant};
 use asperity_cli::say;
 use serde_json::{Value, json};
 
@@ -99,7 +99,7 @@ pub(super) fn print_curve(curve: &LeakCurve, record: &LoadingRecord, seal: &Seal
         ),
     ]);
     say!();
-    say!("narrowest: the least gap of the widest channel, which all fluid passes that takes it");
+    say!("narrowest: the least gap of the widest channel");
     say!(
         "drop there: share of the pressure drop at that cell; lost there: share of the power in the 9 x 9 cells about it"
     );
@@ -142,7 +142,7 @@ pub(super) fn print_leak(state: &LoadingState, leak: &Leak, seal: &Seal) {
     say!(
         "{at}: leak rate {} m³/s, {} ml/min{throughput}",
         scientific(leak.leak_rate, 4),
-        scientific(leak.leak_rate / MILLILITRE_A_MINUTE, 4)
+        significant(leak.leak_rate / MILLILITRE_A_MINUTE, 4)
     );
     say!(
         "  narrowest at node ({}, {}), where the gap is {}: {:.1} % of the pressure drop at its cell, {:.1} % of the power in the 9 x 9 cells about it",
@@ -210,9 +210,10 @@ fn constriction(constriction: Option<CriticalConstriction>) -> Value {
     })
 }
 
-/// The last of all states, with all of them, and with what looks wrong.
-pub(super) fn document(states: Vec<Value>, warning: Option<String>) -> Option<Value> {
+/// The last of all states, with all of them, the outlet pressure of a gas, and what looks wrong.
+pub(super) fn document(states: Vec<Value>, seal: &Seal, warning: Option<String>) -> Option<Value> {
     let mut document = states.last()?.clone();
+    document["gas_outlet_pressure"] = json!(seal.outlet_pressure());
     document["states"] = Value::Array(states);
     document["warnings"] = warning.into_iter().collect();
     Some(document)

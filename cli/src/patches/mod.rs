@@ -19,7 +19,7 @@ use std::path::PathBuf;
 
 use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
 use clap::Args;
@@ -56,13 +56,13 @@ pub(crate) struct Options {
     /// Print one JSON object instead: percolates_x, percolates_y, seals_x and seals_y (the state from which on that
     /// holds, or null), on a periodic half-space also patch_winds_x, patch_winds_y, no_channel_winds_x and
     /// no_channel_winds_y, state, patches, largest_patch, channel_x and channel_y (the narrowest place of the widest
-    /// channel, or null); SI units
+    /// channel, or null); SI units; files are written only if --out is given
     #[arg(long)]
     json: bool,
 
-    /// Directory for the files, created if it does not exist
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
+    /// Directory for the files, created if it does not exist [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 impl Options {
@@ -83,48 +83,48 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let state = moment::state(&record, options)?;
     let followed = Followed::new(&record, connectivity);
     words::print_record(&record, connectivity);
-    panel::register_font()?;
-    let out = &options.out;
-    std::fs::create_dir_all(out)
-        .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
-
-    let mut outcome = Outcome::default();
-    // Else there is one node, or several at one height.
-    let mut events = record.history().events().iter();
-    let carries = events.any(|state| state.contact.load > 0.0);
-    match &followed {
-        Ok(followed) => {
-            words::print_passages(&options.record, &record, followed);
-            outcome.written(table::write(&record, followed, &out.join("patches.csv")));
-            if carries {
-                outcome.written(charts::draw(&record, followed, &out.join("patches.png")));
-                outcome.written(tree::draw(&record, followed, &out.join("merge_tree.png")));
-            }
-        }
-        Err(error) => say!("patches cannot be followed along this path: {error}\n"),
-    }
     let moment = Moment::new(&record, state, connectivity);
     if let (true, Ok(moment)) = (options.json, &moment) {
         let object = object::of(&record, followed.as_ref().ok(), moment);
         answer!("{}", object.map_err(|error| Failure::new("cannot find the channels", error))?);
     }
-    if carries {
-        outcome.written(activation::draw(&record, &out.join("activation.png")));
-    } else {
+    // Else there is one node, or several at one height.
+    let mut events = record.history().events().iter();
+    let carries = events.any(|state| state.contact.load > 0.0);
+    match &followed {
+        Ok(followed) => words::print_passages(&options.record, &record, followed),
+        Err(error) => say!("patches cannot be followed along this path: {error}\n"),
+    }
+    if !carries {
         say!("no node has touched under load: no loads of activation to draw");
     }
-    match moment {
-        Ok(moment) => {
-            words::print_moment(&moment);
-            let channels = words::print_channels(&record, &moment);
-            outcome.note(channels.map_err(|error| Failure::new("cannot find the channels", error)));
-            // First touch has no pressures.
-            if moment.state.contact.load > 0.0 {
-                let name = out.join("distributions.png");
-                outcome.written(distributions::draw(&record, &moment, &name));
+    let mut outcome = Outcome::default();
+    if let Ok(moment) = &moment {
+        words::print_moment(moment);
+        let channels = words::print_channels(&record, moment);
+        outcome.note(channels.map_err(|error| Failure::new("cannot find the channels", error)));
+    }
+    if let Some(directory) = outcome::directory(options.out.as_deref(), options.json) {
+        panel::register_font()?;
+        outcome::create_folder(directory)?;
+        let place = |name: &str| directory.join(name);
+        if let Ok(followed) = &followed {
+            outcome.written(table::write(&record, followed, &place("patches.csv")));
+            if carries {
+                outcome.written(charts::draw(&record, followed, &place("patches.png")));
+                outcome.written(tree::draw(&record, followed, &place("merge_tree.png")));
             }
         }
-        Err(failure) => outcome.note(Err(failure)),
+        if carries {
+            outcome.written(activation::draw(&record, &place("activation.png")));
+        }
+        // First touch has no pressures.
+        if let Some(moment) = moment.as_ref().ok().filter(|moment| moment.state.contact.load > 0.0)
+        {
+            let place = place("distributions.png");
+            outcome.written(distributions::draw(&record, moment, &place));
+        }
     }
+    outcome.note(moment.map(|_| ()));
     outcome.finish()
 }

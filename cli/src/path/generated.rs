@@ -2,7 +2,7 @@
 
 use asperity::surface::{Amplitude, SelfAffine, Topography};
 use asperity::{Grid, LoadingSolver, SurfaceError};
-use asperity_cli::number::{plain, quantity};
+use asperity_cli::number::{counted, plain, quantity};
 use asperity_cli::outcome::Failure;
 use serde_json::{Value, json};
 
@@ -42,7 +42,9 @@ impl Generated {
         let rolloff = roughness.rolloff.unwrap_or(paper.rolloff_wavelength());
         if 2.0 * cell > rolloff {
             return Err(Failure::request(format!(
-                "{nodes} nodes a side are too few for the roll-off wavelength of {}: two cells are {}",
+                "{} a side of {} cannot carry the roll-off wavelength of {}: two cells are {}",
+                counted(nodes, "node"),
+                quantity(side.max(side_y), "m", 5),
                 quantity(rolloff, "m", 5),
                 quantity(2.0 * cell, "m", 5)
             )));

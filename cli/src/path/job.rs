@@ -79,6 +79,7 @@ impl Job {
         if options.surface.is_some() {
             Reading::check_row(&surface, options.boundary())?;
         }
+        check_kept(options.record.as_deref(), &surface)?;
         let hardness = hardness(options, &grid)?;
         Ok(Self {
             name,
@@ -136,6 +137,7 @@ impl Job {
             (None, Some(_)) => None,
             (None, None) => Some(file.to_path_buf()),
         };
+        check_kept(kept.as_deref(), &surface)?;
         if let (Some(_), Some(last)) = (passed, record.states().last()) {
             note!(
                 "note: {} continues to {}; the requested target lies before that and is read from it",
@@ -190,6 +192,7 @@ impl Job {
         let surface =
             Topography::new(record.grid(), heights).map_err(|error| failed(error.into()))?;
         let targets = targets(options, surface.grid());
+        check_kept(options.record.as_deref(), &surface)?;
         let source = json!({
             "record": file.display().to_string(),
             "heights_md5": fingerprint(&surface),
@@ -538,6 +541,38 @@ fn hardness(options: &Options, grid: &Grid) -> Result<Option<DMatrix<f64>>, Fail
 fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {
     options.targets(grid, &[ContactTarget::AreaFraction(AREA_FRACTION)])
 }
+
+/// `Ok` unless a file where a record goes has the path of another surface: the work of hours may be in it.
+fn check_kept(file: Option<&Path>, surface: &Topography) -> Result<(), Failure> {
+    let Some(file) = file.filter(|file| file.is_file()) else { return Ok(()) };
+    let (grid, heights) = match LoadingRecord::read_npz(file) {
+        Ok(record) => (record.grid(), record.heights().clone()),
+        Err(_) => match AdhesiveRecord::read_npz(file) {
+            Ok(record) => (record.grid(), record.heights().clone()),
+            Err(_) => return Ok(()),
+        },
+    };
+    // Records count heights from the highest node.
+    let highest = |map: &HeightMap| map.max_height();
+    let shift = highest(surface.map()) - highest(&heights);
+    let rounding = SAME * surface.map().peak_to_valley();
+    let is_near = |(a, b): (&f64, &f64)| (a - b - shift).abs() <= rounding;
+    let [(x, y), (other_x, other_y)] = [surface.grid(), &grid].map(Grid::sides);
+    let is_same = surface.grid().shape() == grid.shape()
+        && (x - other_x).abs() <= SAME * x
+        && (y - other_y).abs() <= SAME * y
+        && surface.heights().iter().zip(heights.matrix()).all(is_near);
+    if is_same {
+        return Ok(());
+    }
+    Err(Failure::request(format!(
+        "{} is the record of another surface, which would be lost: name another file with --record, or remove it",
+        file.display()
+    )))
+}
+
+/// How far two surfaces may be apart that are one, relative to their sides and heights.
+const SAME: f64 = 1e-9;
 
 /// From differences of the heights, whatever the surface is from: a record knows nothing else.
 fn rms_gradient(surface: &Topography) -> Result<f64, Failure> {

@@ -171,8 +171,7 @@ fn follow_one(
     let (job, conductions) = prepare(options, is_first)?;
     let begun = SystemTime::now();
     // What cannot be written is said before the work.
-    std::fs::create_dir_all(&options.out)
-        .map_err(|error| Failure::new(format!("cannot create {}", options.out.display()), error))?;
+    outcome::create_folder(&options.out)?;
     if let Some(record) = job.record() {
         outcome::check_place(record)?;
     }

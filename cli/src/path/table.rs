@@ -124,9 +124,12 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
         ),
         ("estimated error of the approach", quantity(last.approach_error, "m", 2)),
     ];
-    let excess = certificate
-        .excess_pressure
-        .map(|excess| ("pressure beyond the hardness", format!("{} of it", scientific(excess, 2))));
+    let beyond = |excess: f64| match excess > 0.0 {
+        true => format!("{} of it", scientific(excess, 2)),
+        false => "none".to_string(),
+    };
+    let excess = certificate.excess_pressure;
+    let excess = excess.map(|excess| ("pressure beyond the hardness", beyond(excess)));
     for (what, value) in left.into_iter().chain(excess) {
         say!("  {what:32} {value}");
     }
@@ -188,8 +191,8 @@ pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Fa
             _ => "",
         };
         warnings.push(format!(
-            "the path ended before {target}.{beyond} If you did not expect this, check the units: E* is {} Pa",
-            scientific(job.e_star(), 3)
+            "the path ended before {target}.{beyond} If you did not expect this, check the units of E*, {}, of heights and of sides",
+            quantity(job.e_star(), "Pa", 3)
         ));
     }
     Ok(warnings)

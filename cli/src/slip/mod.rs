@@ -121,8 +121,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
 fn write(joint: &Joint, sheared: Option<&Sheared>, directory: &Path) -> Result<Outcome, Failure> {
     panel::register_font()?;
-    std::fs::create_dir_all(directory)
-        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
+    outcome::create_folder(directory)?;
     let mut outcome = Outcome::default();
     let place = |name: &str| directory.join(name);
     let [loading, cycles, elements, history] = TABLES;

@@ -71,7 +71,7 @@ pub(crate) struct Options {
     friction: f64,
 
     /// Direction of sliding in degrees from x towards y: that in which the other body moves over this one
-    #[arg(long, value_name = "DEGREES", value_parser = ANGLE.any(), default_value_t = 0.0)]
+    #[arg(long, value_name = "DEGREES", value_parser = ANGLE.any(), default_value_t = 0.0, requires = "friction")]
     angle: f64,
 
     /// Depth at which stresses are computed; may be given several times [default: from the surface to the size of the
@@ -117,8 +117,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return Ok(());
     };
     panel::register_font()?;
-    std::fs::create_dir_all(directory)
-        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
+    outcome::create_folder(directory)?;
     let mut outcome = Outcome::default();
     let place = |name: &str| directory.join(name);
     outcome.written(table::write(&moment, &bodies, &place("stress.csv")));

@@ -169,9 +169,9 @@ impl<'a> Course<'a> {
         done
     }
 
-    /// Lets a path that has begun go on to where it is to end.
+    /// Lets the path of a record go on to where this one is to end.
     fn resume(&mut self) -> Result<(), Failure> {
-        if self.followed.path.state().is_none() {
+        if self.job.begun_with_adhesion().is_none() {
             return Ok(());
         }
         let turned = self.followed.path.load_to_first_of(&self.targets());
