@@ -502,8 +502,9 @@ await step("a loop is drawn as it was run, and a leak down to where it ends", as
   beside.quiet();
 });
 
-await step("time is logarithmic for creep that begins at zero, and a table of even steps is not", async () => {
-  const times = [0, ...Array.from({ length: 41 }, (_, i) => 10 ** (i / 10 - 2))];
+await step("time is logarithmic for creep that begins at zero, and a table of even steps is not; all axes have numbers", async () => {
+  // To three years.
+  const times = [0, ...Array.from({ length: 41 }, (_, i) => 10 ** (i / 4 - 2))];
   const even = Array.from({ length: 301 }, (_, i) => i * 1e-9);
   const table = (short, log, along, values, chart) => {
     const columns = [{ name: along, values }, { name: chart, values: values.map((_, i) => 1 + i) }];
@@ -511,7 +512,10 @@ await step("time is logarithmic for creep that begins at zero, and a table of ev
   };
   changed("beside.html", "creep.html", ({ records: [record] }) => {
     const slip = table("Slip", false, "displacement", even, "slip_area");
-    record.panels = [table("Creep", true, "time", times, "load"), slip];
+    // Down to 10⁻²⁹ m³/s, over loads that the path goes beyond.
+    const leak = table("Leak", false, "load", Array.from({ length: 24 }, (_, i) => 1e-3 * (1 + i)), "leak_rate");
+    leak.columns[1].values = leak.columns[1].values.map((_, i) => 10 ** (-6 - i));
+    record.panels = [table("Creep", true, "time", times, "load"), slip, leak];
   });
   const creep = await open("creep.html");
   await shown(creep);
@@ -520,6 +524,15 @@ await step("time is logarithmic for creep that begins at zero, and a table of ev
   });
   assert.ok(time && !displacement);
   near(first, 0.01, "the first time on the axis");
+  const drawn = await creep.evaluate(() =>
+    viewer.panels.map(({ charts: [{ plot, cursor }] }) => [plot.axes.map(({ _values }) => _values.filter((words) => words)), cursor.hidden, plot.scales.y.min]),
+  );
+  for (const [labels, isHidden, least] of drawn) {
+    assert.ok(labels.every((words) => words.length > 2) && Number.isFinite(least), JSON.stringify(labels));
+    assert.ok(isHidden, "the load of the slider is beyond the table, or on no axis of it");
+  }
+  const [, , [[, rates]]] = drawn;
+  assert.ok(rates.includes("10⁻⁶") || rates.includes("10⁻¹⁰"), rates.join());
   creep.quiet();
 });
 

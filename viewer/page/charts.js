@@ -70,9 +70,10 @@ class Chart {
     });
     // Parts of another nominal area are other areas.
     const share = (line) => (y.unit === "1" && chosen.area !== "%" && line.nominal ? line.nominal / y.nominal : 1);
-    x.in = unitFor(x.unit, Math.max(...lines.map((line) => greatest(line.x))), x.nominal);
+    x.in = logarithmic(x, unitFor(x.unit, x.log ? 1 : Math.max(...lines.map((line) => greatest(line.x))), x.nominal), lines.map((line) => line.x));
     const tops = all.map(({ places, line }) => share(line) * greatest(places.map((place) => line.y[place])));
-    y.in = y.unit === "part" ? { name: "%", factor: 0.01 } : unitFor(y.unit, Math.max(...tops), y.nominal);
+    const unit = y.unit === "part" ? { name: "%", factor: 0.01 } : unitFor(y.unit, y.log ? 1 : Math.max(...tops), y.nominal);
+    y.in = logarithmic(y, unit, lines.map((line) => line.y));
     const tables = all.map(({ places, line, number }) => {
       const kept = places.filter((place) => number(line.x[place], x.log, 1) !== null);
       const factor = y.in.factor / share(line);
@@ -85,7 +86,7 @@ class Chart {
     );
     this.data = uPlot.join(tables);
     const drawn = this.traces.map((points) => points && { paths: traced(points) });
-    const axis = (words, log) => ({
+    const axis = (words, { log, in: { tens } }) => ({
       label: words,
       labelSize: 18,
       labelFont: "12px system-ui, sans-serif",
@@ -94,7 +95,7 @@ class Chart {
       grid: { stroke: () => ink(log ? "--faint" : "--grid"), width: 1 },
       ticks: { stroke: () => ink("--grid"), width: 1, size: 4 },
       gap: 3,
-      values: (plot, splits) => (log ? decades(splits) : splits.map(short)),
+      values: (plot, splits) => (log ? decades(splits, tens) : splits.map(short)),
     });
     const label = (axis) => `${axis.words}${axis.in.name ? " [" + axis.in.name + "]" : ""}`;
     const width = this.holder.clientWidth || 360;
@@ -104,8 +105,8 @@ class Chart {
         height: 210,
         legend: { show: false },
         cursor: { drag: { x: false, y: false }, points: { show: lines.every(({ rows }) => !rows) } },
-        scales: { x: { time: false, distr: x.log ? 3 : 1, range: (plot, least, most) => (least < most ? [least, most] : around(least, most, x.log)) }, y: { distr: y.log ? 3 : 1, range: (plot, least, most) => (y.log || !(least < most) ? around(least, most, y.log) : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
-        axes: [{ ...axis(label(x), x.log), size: 30 }, { ...axis(label(y), y.log), size: 48 }],
+        scales: { x: { time: false, distr: x.log ? 3 : 1, range: (plot, least, most) => (least < most && !x.log ? [least, most] : around(least, most, x.log)) }, y: { distr: y.log ? 3 : 1, range: (plot, least, most) => (y.log || !(least < most) ? around(least, most, y.log) : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
+        axes: [{ ...axis(label(x), x), size: 30 }, { ...axis(label(y), y), size: 48 }],
         series: [{}, ...lines.map((line, i) => ({ ...drawn[i], stroke: () => line.colour, width: 1.8, dash: DASHES[line.dash], spanGaps: true, points: { show: (line.places?.length ?? Infinity) < 50, size: 5, fill: line.colour } }))],
         hooks: { setCursor: [(plot) => this.hover(plot)], draw: [() => this.follow()] },
       },
@@ -136,9 +137,10 @@ class Chart {
 
   follow() {
     if (!this.plot) return;
-    this.cursor.hidden = this.place === undefined;
     const value = this.place / this.x.in.factor;
-    const left = this.place === undefined || (this.x.log && !(value > 0)) ? -10 : this.plot.valToPos(value, "x");
+    const left = this.place === undefined || (this.x.log && !(value > 0)) ? -1 : this.plot.valToPos(value, "x");
+    // Beyond the end of a table it would stand in another chart.
+    this.cursor.hidden = !(left >= 0 && left <= this.plot.over.clientWidth);
     this.cursor.style.transform = `translateX(${left.toFixed(1)}px)`;
     this.read();
   }
@@ -184,13 +186,26 @@ function around(least, most, log) {
   return least === 0 ? [0, 1] : [Math.min(0, 1.5 * least), Math.max(0, 1.5 * most)];
 }
 
-/** Labels of whole powers of ten, and of few if there are many. */
-function decades(splits) {
+/**
+ * A unit for an axis of logarithms, whose numbers are put about 1 by a power of ten: axes of far smaller numbers are not
+ * drawn.
+ */
+function logarithmic({ log }, { name, factor }, columns) {
+  const sizes = log ? columns.flatMap((values) => [...values].filter((value) => value > 0 && Number.isFinite(value))) : [];
+  if (!sizes.length) return { name, factor, tens: 0 };
+  const logs = sizes.map((value) => Math.log10(value / factor));
+  const extent = logs.reduce(([least, most], log) => [Math.min(least, log), Math.max(most, log)], [Infinity, -Infinity]);
+  const tens = Math.round((extent[0] + extent[1]) / 2);
+  return { name, factor: factor * 10 ** tens, tens };
+}
+
+/** Labels of whole powers of ten, of numbers that are so many powers of ten smaller; of few if there are many. */
+function decades(splits, tens) {
   const isPower = (value) => value > 0 && Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-6;
   const every = Math.ceil(splits.filter(isPower).length / 6);
   return splits.map((value) => {
-    const power = Math.round(Math.log10(value));
-    return isPower(value) && power % every === 0 ? short(value) : "";
+    const power = Math.round(Math.log10(value)) + tens;
+    return isPower(value) && power % every === 0 ? short(Number(`1e${power}`)) : "";
   });
 }
 

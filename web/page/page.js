@@ -4,6 +4,8 @@ const UNITS_OF_LENGTH = ["µm", "nm", "mm", "m", "cm", "Å", "pm", "in"];
 const GIGA = 1e9, MILLI = 1e-3, MICRO = 1e-6;
 
 let worker, file = null, isReady = false, isRunning = false;
+/** How many surfaces have been asked for. */
+let asks = 0;
 
 const send = (type, rest = {}) => worker.postMessage({ type, ...rest });
 
@@ -84,7 +86,7 @@ function read(chosen) {
   const asked = reading();
   ask(null);
   tell(`${file.name} is being read`);
-  send("read", { file, reading: asked });
+  send("read", { file, reading: asked, number: ++asks });
 }
 
 function generate() {
@@ -98,11 +100,13 @@ function generate() {
     seed: number("seed"),
   };
   file = null;
+  // The same file can be chosen again.
+  byId("file").value = "";
   byId("reading").hidden = true;
   forget();
   ask(null);
   tell("the surface is being generated");
-  send("generate", { generation });
+  send("generate", { generation, number: ++asks });
 }
 
 /** Heights from dark to light, y upwards as on the map. */
@@ -260,7 +264,10 @@ function renew() {
     forget();
   }
   worker = new Worker("worker.js", { type: "module" });
-  worker.onmessage = ({ data: { type, ...rest } }) => ANSWERS[type](rest);
+  worker.onmessage = ({ data: { type, number: asked, ...rest } }) => {
+    // What is said of a surface in whose place another was asked for since is no answer, unless all is lost.
+    if (asked === undefined || asked === asks || rest.fault?.kind === "broken") ANSWERS[type](rest);
+  };
   worker.onerror = (event) => {
     byId("fault").hidden = false;
     byId("fault").textContent = `The page cannot compute here: ${event.message ?? "its worker does not start. Open it from a server, not from a folder"}`;
@@ -285,6 +292,8 @@ function listen() {
   byId("reading").onchange = guarded(() => read(file));
   byId("generation").onsubmit = guarded(generate);
   byId("job").onsubmit = guarded(run);
+  // A path that has been stopped goes on as it was asked for.
+  byId("job").onchange = () => (byId("go-on").hidden = true);
   byId("body").onchange = byId("against").onchange = chooseBodies;
   byId("target").onchange = ({ target: { selectedOptions: [{ dataset }] } }) => {
     byId("target-unit").textContent = dataset.unit;

@@ -34,11 +34,11 @@ const told = (type, work, more = {}) => {
   }
 };
 
-function take(made) {
+function take(made, number) {
   surface?.free();
   surface = made;
   const information = JSON.parse(made.information()), picture = made.picture();
-  postMessage({ type: "surface", information, picture }, [picture.buffer]);
+  postMessage({ type: "surface", information, picture, number }, [picture.buffer]);
 }
 
 /** Lets messages of the page come in. */
@@ -105,24 +105,26 @@ onmessage = async ({ data: { type, ...asked } }) => {
   const mine = asks;
   await ready;
   if (type === "read") {
-    const { file, reading } = asked;
+    const { file, reading, number } = asked;
     if (file.size > LARGEST) {
       const message = `${file.name} has ${(file.size / 1e6).toFixed(0)} MB: at most ${LARGEST / 1e6} MB have room here. The program reads larger files`;
-      postMessage({ type: "fault", of: type, fault: { kind: "memory", message } });
+      postMessage({ type: "fault", of: type, fault: { kind: "memory", message }, number });
       return;
     }
     let bytes;
     try {
       bytes = new Uint8Array(await file.arrayBuffer());
     } catch (error) {
-      postMessage({ type: "fault", of: type, fault: { kind: "other", message: `${file.name} cannot be read: ${error.message}` } });
+      postMessage({ type: "fault", of: type, fault: { kind: "other", message: `${file.name} cannot be read: ${error.message}` }, number });
       return;
     }
     // While a large file was on its way, the page may have asked for another surface.
     if (mine !== asks) return;
-    told(type, () => take(WebSurface.read(bytes, file.name, JSON.stringify(reading))));
-  } else if (type === "generate") told(type, () => take(WebSurface.generate(JSON.stringify(asked.generation))));
-  else if (type === "run") {
+    told(type, () => take(WebSurface.read(bytes, file.name, JSON.stringify(reading)), number), { number });
+  } else if (type === "generate") {
+    const { generation, number } = asked;
+    told(type, () => take(WebSurface.generate(JSON.stringify(generation)), number), { number });
+  } else if (type === "run") {
     told(type, () => {
       path?.free();
       path = undefined;
