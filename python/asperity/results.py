@@ -421,7 +421,8 @@ class Leak(_WithArrays):
     permeability : float
         Along the flow [m³/(Pa s)]: of a gap g everywhere it is g³ / (12 viscosity).
     transverse_permeability : float
-        Across [m³/(Pa s)]; NaN on a free boundary.
+        Mean flux across the flow over the mean pressure gradient along it [m³/(Pa s)], of either sign; NaN on a free
+        boundary.
     mean_field_leak_rate : float
         Bruggeman's estimate of the leak rate [m³/s].
     constriction : CriticalConstriction or None
@@ -469,7 +470,8 @@ class LeakCurve(_WithArrays):
     leak_rate, mean_field_leak_rate : ndarray of float
         [m³/s]
     permeability, transverse_permeability : ndarray of float
-        Along the flow and across [m³/(Pa s)]; across NaN on a free boundary.
+        Mean fluxes along the flow and across it over the mean pressure gradient along it [m³/(Pa s)]; across of either
+        sign, and NaN on a free boundary.
     constrictions : list of CriticalConstriction or None
         The narrowest place of the widest channel; None where nothing leaks.
     imbalance : ndarray of float

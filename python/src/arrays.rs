@@ -9,6 +9,7 @@ use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
 use crate::argument::one_of;
 use crate::errors::{Failure, Fallible, Number, Numbers};
@@ -33,7 +34,20 @@ impl<'py> Found<'py> {
         let py = value.py();
         let numpy = py.import(intern!(py, "numpy"))?;
         let masked = numpy.getattr(intern!(py, "ma"))?;
-        let is_masked = masked.call_method1(intern!(py, "isMaskedArray"), (value,))?.is_truthy()?;
+        let is_mask = |value: &Bound<'py, PyAny>| {
+            masked.call_method1(intern!(py, "isMaskedArray"), (value,))?.is_truthy()
+        };
+        // Rows that are masked keep their masks.
+        let rows = value.cast::<PyList>().ok().filter(|list| !list.is_empty());
+        let has_masks = match rows {
+            Some(rows) => {
+                rows.iter().map(|row| is_mask(&row)).collect::<PyResult<Vec<_>>>()?.contains(&true)
+            }
+            None => false,
+        };
+        let value =
+            &if has_masks { masked.call_method1("stack", (value,))? } else { value.clone() };
+        let is_masked = is_mask(value)?;
         let array =
             if is_masked { value.clone() } else { numpy.call_method1("asarray", (value,))? };
         let dtype = array.getattr(intern!(py, "dtype"))?;

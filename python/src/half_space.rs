@@ -9,6 +9,7 @@ use asperity::{
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::argument::one_of;
 use crate::arrays::{Found, Kind, column};
@@ -229,9 +230,7 @@ impl HalfSpace {
     #[new]
     #[pyo3(signature = (e_star, boundary))]
     fn new(e_star: f64, boundary: &str) -> Fallible<Self> {
-        if !(e_star > 0.0 && e_star.is_finite()) {
-            return Err(Error::NotPositive { quantity: "composite modulus", value: e_star }.into());
-        }
+        let e_star = checked(e_star)?;
         let surroundings = choose("boundary", boundary, &SURROUNDINGS)?;
         Ok(Self::of(Body::HalfSpace(surroundings), Some(e_star)))
     }
@@ -355,6 +354,7 @@ impl HalfSpace {
         let mean = choose("mean_displacement", mean_displacement, &MEANS)?;
         let growth = choose("growth", growth, &GROWTHS)?;
         let symbol = callable(symbol, "symbol")?;
+        let e_star = e_star.map(checked).transpose()?;
         Ok(Self::of(Body::Symbol { symbol, mean, growth }, e_star))
     }
 
@@ -392,13 +392,22 @@ impl HalfSpace {
             growth: choose("growth", growth, &GROWTHS)?,
             function: callable(coefficients, "coefficients")?,
         });
-        Ok(Self::of(body, e_star))
+        Ok(Self::of(body, e_star.map(checked).transpose()?))
     }
 
     /// Young's modulus [Pa] and Poisson's ratio of each elastic body, if they are known: of one if the other is rigid.
     #[getter]
     fn bodies(&self) -> Vec<(f64, f64)> {
         self.bodies.clone()
+    }
+
+    /// For the garbage collector: functions may refer to what has this body.
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match &self.body {
+            Body::Symbol { symbol: function, .. }
+            | Body::Coefficients(Coefficients { function, .. }) => visit.call(function),
+            Body::HalfSpace(_) | Body::Layers { .. } => Ok(()),
+        }
     }
 
     /// Composite modulus [Pa]; None if it was not given.
@@ -522,6 +531,14 @@ impl HalfSpace {
                 Ok(format!("HalfSpace(e_star={e_star}, boundary='{}')", self.boundary()))
             }
         }
+    }
+}
+
+/// A composite modulus \[Pa\] that is one.
+fn checked(e_star: f64) -> Result<f64, Error> {
+    match e_star > 0.0 && e_star.is_finite() {
+        true => Ok(e_star),
+        false => Err(Error::NotPositive { quantity: "composite modulus", value: e_star }),
     }
 }
 

@@ -75,6 +75,53 @@ const PLASTIC: [Plastic; 5] = [
     plastic!("plastic_work_per_load", work_per_load),
 ];
 
+/// `Ok` if a state is one of a path, or lies between two of its events.
+pub(crate) fn check_on_path(history: &loading::History, state: &LoadingState) -> Result<(), Error> {
+    let (step, events) = (state.step, history.events());
+    let after = events.partition_point(|event| event.step <= step);
+    let present = history.states().last().map_or(0, |last| last.step);
+    let (Some(event), Some(last)) =
+        (after.checked_sub(1).and_then(|k| events.get(k)), history.states().last())
+    else {
+        return Err(Error::StateNotReached { step, present });
+    };
+    if step > present {
+        return Err(Error::StateNotReached { step, present });
+    }
+    let next = events.get(after).unwrap_or(last);
+    let off = |quantity, value| {
+        let (load, approach) = (state.contact.load, state.contact.approach);
+        let expected = "as at the events before and behind it";
+        Err(Error::NotOnPath { step, load, approach, quantity, value, expected })
+    };
+    if state.contact.contact_nodes != event.contact.contact_nodes {
+        return off("number of nodes in contact", event.contact.contact_nodes as f64);
+    }
+    let load: fn(&LoadingState) -> f64 = |state| state.contact.load;
+    let approach: fn(&LoadingState) -> f64 = |state| state.contact.approach;
+    for (quantity, of) in [("load", load), ("approach", approach)] {
+        let (from, to) = (of(event), of(next));
+        let rounding = SAME * (from.abs() + to.abs());
+        if of(state) < from - rounding || of(state) > to + rounding {
+            return off(quantity, from);
+        }
+    }
+    Ok(())
+}
+
+/// An iterator over so many items of a sequence.
+pub(crate) fn iterated<'py>(
+    sequence: &Bound<'py, PyAny>,
+    length: usize,
+) -> Fallible<Bound<'py, PyAny>> {
+    let builtins = sequence.py().import("builtins")?;
+    let places = builtins.getattr("range")?.call1((length,))?;
+    Ok(builtins.getattr("map")?.call1((sequence.getattr("__getitem__")?, places))?)
+}
+
+/// How far beyond an event a state between two of them may be, relative to these.
+const SAME: f64 = 1e-9;
+
 /// What a history is of.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Setting {
@@ -391,9 +438,7 @@ impl History {
     }
 
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyAny>> {
-        let builtins = slf.py().import("builtins")?;
-        let places = builtins.getattr("range")?.call1((slf.get().states().len(),))?;
-        Ok(builtins.getattr("map")?.call1((slf.getattr("__getitem__")?, places))?)
+        iterated(slf, slf.get().states().len())
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, index: Place<'py>) -> Fallible<Bound<'py, PyAny>> {

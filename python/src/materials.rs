@@ -28,7 +28,7 @@ impl Body {
 
     /// Whether it was given by this word.
     pub(crate) fn is(&self, word: &str) -> bool {
-        matches!(self, Self::Named(name) if name == word)
+        matches!(self, Self::Named(name) if name.eq_ignore_ascii_case(word))
     }
 }
 

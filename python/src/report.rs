@@ -9,8 +9,9 @@ use asperity::io::write_whole;
 use asperity_report::{Report as Page, Source};
 use pyo3::prelude::*;
 
+use crate::choice::choose;
 use crate::elastic_path::ElasticPath;
-use crate::errors::Fallible;
+use crate::errors::{Failure, Fallible};
 
 /// Pixels of a page between other cells of a notebook.
 const HEIGHT: u32 = 900;
@@ -86,6 +87,8 @@ impl Report {
 ///     What the page calls them.
 /// folder : str or os.PathLike, optional
 ///     Folder of tables that the program has written of the path: ``slip.csv``, ``creep.csv``, ``leak.csv``, ``unloading.csv``.
+/// units : {'SI', 'mm-N-MPa'}
+///     What the page shows at first; its reader may choose others.
 ///
 /// Returns
 /// -------
@@ -101,7 +104,7 @@ impl Report {
 /// >>> page.html.startswith("<!DOCTYPE html>")
 /// True
 #[pyfunction]
-#[pyo3(signature = (path, other=None, *, name="path", other_name="other path", folder=None))]
+#[pyo3(signature = (path, other=None, *, name="path", other_name="other path", folder=None, units="SI"))]
 fn report(
     py: Python<'_>,
     path: ElasticPath<'_>,
@@ -109,8 +112,15 @@ fn report(
     name: &str,
     other_name: &str,
     folder: Option<PathBuf>,
+    units: &str,
 ) -> Fallible<Report> {
-    let mut page = Page::new();
+    if let Some(folder) = folder.as_ref().filter(|folder| !folder.is_dir()) {
+        return Err(Failure::arguments(format!("there is no folder {}", folder.display())));
+    }
+    let mut page = match choose("units", units, &[("SI", false), ("mm-N-MPa", true)])? {
+        false => Page::new(),
+        true => Page::new().in_millimetres(),
+    };
     let paths = [Some((path, name, folder)), other.map(|other| (other, other_name, None))];
     for (path, name, folder) in paths.into_iter().flatten() {
         page = path.with_record(py, |engine, record| {

@@ -1,6 +1,6 @@
 //! Where to look, or to end: a load, a mean pressure, an approach, an area or a mean gap.
 
-use asperity::{ContactTarget, Error, Grid};
+use asperity::{ContactTarget, Grid};
 
 use crate::errors::{Failure, Fallible};
 
@@ -22,15 +22,8 @@ impl Targets {
                 "load and mean_pressure are the same quantity: give one of them",
             ));
         }
-        let pressed = |pressure: f64| {
-            // The same words as those of the engine for it.
-            if pressure > 0.0 && pressure.is_finite() {
-                Ok(pressure * grid.nominal_area())
-            } else {
-                Err(Error::NotPositive { quantity: "mean pressure", value: pressure })
-            }
-        };
-        let load = self.load.map(Ok).or_else(|| self.mean_pressure.map(pressed)).transpose()?;
+        let pressed = || self.mean_pressure.map(|pressure| pressure * grid.nominal_area());
+        let load = self.load.or_else(pressed);
         let given = [
             load.map(ContactTarget::Load),
             self.approach.map(ContactTarget::Approach),

@@ -110,6 +110,25 @@ def test_pickles_and_records(surface: asp.Surface, tmp_path: Path) -> None:
     assert one.pull_off == pytest.approx(other.pull_off, rel=1e-10) and len(one) == len(other)
 
 
+def test_a_record_goes_on_to_its_end(surface: asp.Surface, tmp_path: Path) -> None:
+    """Opened where it was left, a path goes on to where its branch was to end: from its beginning too."""
+    path = pressed(surface)
+    whole = path.run()
+    for count in (0, 5):
+        begun = pressed(surface)
+        for _ in range(count):
+            next(begun)
+        begun.save(tmp_path / "begun.npz")
+        again = asp.open(tmp_path / "begun.npz")
+        assert isinstance(again, asp.AdhesivePath) and again.end is None
+        again.run()
+        assert (again.end, len(again.states)) == ("target", len(whole))
+        np.testing.assert_allclose(again.states.load, whole.load, atol=1e-9 * np.abs(whole.load).max())
+    path.save(tmp_path / "whole.npz")
+    ended = asp.open(tmp_path / "whole.npz")
+    assert ended.end == "target" and [state.step for state in path.states] == list(range(1, len(whole) + 1))
+
+
 def test_what_is_refused(surface: asp.Surface, tmp_path: Path) -> None:
     refused: list[tuple[dict[str, object], str]] = [
         ({"hardness": 1e9}, "not derived"),

@@ -71,6 +71,12 @@ def test_what_is_missing() -> None:
     np.testing.assert_array_equal(asp.Surface(np.ma.array(z), (5.0, 4.0)).z, z)
 
 
+def test_rows_that_are_masked() -> None:
+    rows = [np.ma.masked_greater(np.arange(4.0) + k, 5.0) for k in range(4)]
+    surface = asp.Surface(rows, size=(1.0, 1.0))
+    assert surface.missing == sum(row.mask.sum() for row in rows) == 1
+
+
 def test_masks_of_truths() -> None:
     """A mask that hides something is refused: there is no contact that may be or not. Without one all are what they are."""
     gap = np.arange(12.0).reshape(3, 4)

@@ -299,6 +299,22 @@ def test_ctrl_c_while_stepping(path: asp.LoadingPath) -> None:
     assert time.process_time() - before < 0.1
 
 
+def test_times_before_the_first_corner(path: asp.LoadingPath) -> None:
+    """Nothing bears before the first corner, which is a jump whether an earlier state was asked for or not."""
+    load = 0.3 * path.history.load[-1]
+    creep = asp.creep(path, asp.Prony.shares([(0.1, 0.2), (1.0, 0.3)]), [1.0, 1.0], load=[0.0, load])
+    early, late = creep.follow([0.0, 1.0, 2.0]).columns(), creep.follow([1.0, 2.0]).columns()
+    assert early["load"][0] == 0.0
+    np.testing.assert_array_equal(early["approach"][1:], late["approach"])
+
+
+def test_times_that_are_too_many(path: asp.LoadingPath) -> None:
+    creep = asp.creep(path, asp.Prony.shares([(0.1, 0.2)]), [0.0, 0.0], load=[0.0, 0.3 * path.history.load[-1]])
+    for steps, halvings in [(60, 2**32 - 1), (0, 25), (10**12, 0)]:
+        with pytest.raises(asp.AsperityError, match="at most ten million"):
+            creep.step_times(1e3, steps=steps, halvings=halvings)
+
+
 def test_what_cannot_creep(path: asp.LoadingPath) -> None:
     rubber, end = asp.Prony.shares(TERMS), path.history.load[-1]
     held = asp.creep(path, rubber, [0.0, 0.0], load=[0.0, 0.8 * end])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import pickle
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +53,25 @@ def test_a_symbol_of_the_engine(small: asp.Surface) -> None:
     assert own.boundary == "symbol" and own.is_periodic and own.e_star == 1e9
     report = asp.check_half_space(small, own)
     assert report.promised_growth == "monotone" and report.least_symbol is not None
+
+
+@pytest.mark.parametrize("e_star", [-5.0, 0.0, np.nan, np.inf])
+def test_a_modulus_is_positive(e_star: float) -> None:
+    with pytest.raises(asp.AsperityError, match="composite modulus"):
+        asp.HalfSpace.from_symbol(lambda qx, qy: 1.0 / np.hypot(qx, qy), e_star=e_star)
+
+
+def test_bodies_that_refer_to_themselves_are_collected() -> None:
+    class Body:
+        def __init__(self) -> None:
+            self.half_space = asp.HalfSpace.from_symbol(self.symbol)
+
+        def symbol(self, qx: np.ndarray, qy: np.ndarray) -> np.ndarray:
+            return 1.0 / np.hypot(qx, qy)
+
+    seen = weakref.ref(Body())
+    gc.collect()
+    assert seen() is None
 
 
 def test_a_layer(small: asp.Surface) -> None:

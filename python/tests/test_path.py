@@ -152,6 +152,28 @@ def test_states_of_other_paths_are_refused(rough: asp.Surface, body: asp.HalfSpa
     assert ahead.value.kind == "StateNotReached" and (ahead.value.step, ahead.value.present) == (101, 1)
 
 
+def test_maps_of_states_that_are_of_this_path(rough: asp.Surface, body: asp.HalfSpace) -> None:
+    """Maps and patches of a state of another path are refused, and those of a state between two events are not."""
+    path = asp.load_path(rough, body, area_fraction=0.1, check=False)
+    history = path.run(check=False)
+    other = asp.load_path(rough.scaled(1.5), body, area_fraction=0.1, check=False)
+    foreign = other.run(check=False)[-5]
+    analysis = asp.patches(path)
+    for refused in (path.contact_map, path.yielded_map, path.pressure, analysis.at):
+        with pytest.raises(asp.AsperityError) as out:
+            refused(foreign)
+        assert out.value.kind == "NotOnPath"
+    for state in (history[0], history[7], history.at(load=0.37 * history.load[-1]), history[-1], path.state):
+        assert state is not None
+        assert path.contact_map(state).sum() == state.contact_nodes == (analysis.at(state).labels > 0).sum()
+    # What comes later is in no analysis of before.
+    path.continue_to(area_fraction=0.2)
+    path.run(check=False)
+    with pytest.raises(asp.AsperityError) as out:
+        analysis.at(path.state)
+    assert out.value.kind == "StateNotReached"
+
+
 def test_arguments_that_make_no_sense(rough: asp.Surface, body: asp.HalfSpace) -> None:
     for arguments, kind in [
         ({"load": -1.0}, "NotPositive"),

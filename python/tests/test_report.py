@@ -71,6 +71,17 @@ def test_two_paths_and_tables(tmp_path: Path) -> None:
     assert page.notes == ["leak.csv is left out: line 2 has 1 columns and not 2"]
 
 
+def test_units_are_those_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
+    path = path_of()
+    record = tmp_path / "path.npz"
+    path.save(record)
+    program("report", record, "--out", tmp_path / "page.html", "--units", "mm-N-MPa")
+    there = data_of((tmp_path / "page.html").read_text(encoding="utf-8"))["units"]
+    assert data_of(asp.report(path, units="mm-N-MPa").html)["units"] == there != data_of(asp.report(path).html)["units"]
+    with pytest.raises(ValueError, match="'SI', 'mm-N-MPa'"):
+        asp.report(path, units="inch")  # type: ignore[arg-type]
+
+
 def test_a_path_without_states_has_no_page() -> None:
     surface = asp.example_surface(nodes=16)
     path = asp.load_path(surface, asp.HalfSpace(1e9, boundary="free"), check=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -77,6 +78,21 @@ def test_sweeps(rough: asp.Surface, body: asp.HalfSpace) -> None:
     with pytest.raises(asp.AsperityError):
         next(mixed)
     assert next(mixed, None) is None
+
+
+def test_a_sweep_whose_warnings_are_errors_loses_nothing(body: asp.HalfSpace) -> None:
+    surface = asp.example_surface(nodes=32)
+    sweep = asp.sweep(surface, body, [10.0, 20.0])
+    loads = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(4):
+            try:
+                loads.append(next(sweep).load)
+            except asp.AsperityWarning:
+                loads.append(None)
+    assert loads[0::2] == [None, None] and np.allclose(loads[1::2], [10.0, 20.0])
+    assert next(sweep, None) is None
 
 
 def test_sweeps_that_nobody_follows_to_their_end(rough: asp.Surface, body: asp.HalfSpace) -> None:

@@ -229,14 +229,59 @@ def test_preparation() -> None:
         lambda: surface.resample((8, 8), method="nearest"),
         lambda: surface.window("kaiser"),
         lambda: surface.psd("octaves"),
+        lambda: surface.psd(-1),
+        lambda: surface.psd(True),
+        lambda: surface.psd(2.5),  # type: ignore[arg-type]
     ]:
         with pytest.raises(asp.AsperityError, match="must be"):
             call()
     with pytest.raises(asp.AsperityError) as out:
         surface.crop(rows=(0, 65))
     assert out.value.kind == "CropOutOfGrid" and out.value.axis == "y"
-    with pytest.raises(asp.AsperityError, match="different grids"):
+    with pytest.raises(asp.AsperityError) as out:
         surface + fine
+    assert out.value.kind == "GridMismatch"
+
+
+def test_pieces_without_holes() -> None:
+    """A hole is not in every piece."""
+    z = np.random.default_rng(3).standard_normal((20, 30))
+    z[0, 0] = np.nan
+    surface = asp.Surface(z, size=(3.0, 2.0))
+    piece = surface.crop((5, 20), (5, 20))
+    assert piece.missing == 0 and np.array_equal(piece.z, z[5:20, 5:20]) and piece.sq > 0
+    assert surface.crop((0, 3)).missing == 1 and surface.crop((0, 3)).shape == (3, 30)
+    with pytest.raises(asp.AsperityError) as out:
+        surface.crop(columns=(0, 31))
+    assert out.value.kind == "CropOutOfGrid"
+
+
+def test_what_still_repeats() -> None:
+    """Steps that treat the border as an end leave open whether a surface repeats."""
+
+    class Topography:
+        physical_sizes, unit, is_periodic = (1e-3, 1e-3), "m", True
+
+        def heights(self) -> np.ndarray:
+            return asp.wave(1e-6, 1e-3 / 4, (32, 32), 1e-3).z
+
+    surface = asp.Surface(Topography())
+    assert surface.is_periodic
+    for kept in (surface.level("mean"), surface.low_pass(2e-4, "sharp"), surface.resample((64, 64), "fourier"), -surface):
+        assert kept.is_periodic
+    for open_ in (
+        surface.level(),
+        surface.low_pass(2e-4),
+        surface.high_pass(2e-4),
+        surface.resample((64, 64)),
+        surface.crop((0, 8)),
+    ):
+        assert open_.is_periodic is None
+
+
+def test_sizes_that_differ_by_rounding_are_one() -> None:
+    z = np.eye(3)
+    assert (asp.Surface(z, 0.3) + asp.Surface(z, 0.1 * 3)).sz == 2.0
 
 
 def test_generators_are_those_of_the_library() -> None:

@@ -9,6 +9,7 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::arrays::column;
 use crate::errors::{Failure, Fallible};
+use crate::history::iterated;
 
 /// States are pickled as a branch of one.
 fn pickled<'py>(
@@ -299,6 +300,10 @@ impl AdhesiveBranch {
 
     fn __len__(&self) -> usize {
         self.branch.states().len()
+    }
+
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyAny>> {
+        iterated(slf, slf.get().branch.states().len())
     }
 
     fn __getitem__(&self, index: isize) -> PyResult<AdhesiveState> {

@@ -170,9 +170,6 @@ impl Creep {
     }
 }
 
-/// Times that there is memory for, and patience.
-const MOST_TIMES: usize = 10_000_000;
-
 #[pymethods]
 impl Creep {
     /// When the contact recedes for the first time [s]; None if it never does.
@@ -342,16 +339,9 @@ impl Creep {
         steps: usize,
         halvings: u32,
     ) -> Fallible<Bound<'py, PyArray1<f64>>> {
-        let corners = self.course.corners().corners().len();
-        let count = steps.saturating_mul(corners).saturating_mul(1 << halvings.min(24));
-        if count > MOST_TIMES {
-            let (quantity, value) = ("number of steps in all", count as f64);
-            return Err(
-                Error::OutOfRange { quantity, value, expected: "at most ten million" }.into()
-            );
-        }
         let least = Steps { least: steps, ..Steps::default() };
-        let steps = (0..halvings).fold(least, |steps, _| steps.halved());
+        // More often than a number has bits nothing is left to halve.
+        let steps = (0..halvings.min(usize::BITS)).fold(least, |steps, _| steps.halved());
         let times = detached(py, || steps.times(self.law(), self.course.corners(), end))??;
         Ok(column(py, times))
     }

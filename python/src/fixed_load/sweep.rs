@@ -46,6 +46,8 @@ struct Thread {
     answers: Option<Answers<Solved>>,
     /// Whether a solution was asked for and has not come yet.
     is_asked: bool,
+    /// A solution whose warnings were made errors: it comes next.
+    kept: Option<FixedLoadSolution>,
     left: usize,
 }
 
@@ -63,6 +65,9 @@ impl LoadSweep {
         // Not locked while it waits: a handler of signals may ask for this sweep too.
         let mut answers = {
             let mut thread = self.lock(py);
+            if let Some(kept) = thread.kept.take() {
+                return Ok(Some(Solution::new(kept, self.setting)));
+            }
             if thread.left == 0 {
                 return Ok(None);
             }
@@ -97,14 +102,9 @@ impl LoadSweep {
         }
         match solved? {
             Some(Ok(Ok(solution))) => {
-                if self.check {
-                    let e_star = self.e_star.filter(|_| solution.contact.plastic.is_none());
-                    let on = (&self.setting.grid, self.setting.boundary);
-                    let fields = &solution.fields;
-                    let found = detached(py, || {
-                        of_contact(&fields.pressure, &fields.contact_map, on, e_star)
-                    })??;
-                    warn_all(py, found)?;
+                if let Err(error) = self.warn(py, &solution) {
+                    self.lock(py).kept = Some(solution);
+                    return Err(error);
                 }
                 Ok(Some(Solution::new(solution, self.setting)))
             }
@@ -116,6 +116,19 @@ impl LoadSweep {
 }
 
 impl LoadSweep {
+    /// What looks wrong with a solution, if that was asked for.
+    fn warn(&self, py: Python<'_>, solution: &FixedLoadSolution) -> Fallible<()> {
+        if !self.check {
+            return Ok(());
+        }
+        let e_star = self.e_star.filter(|_| solution.contact.plastic.is_none());
+        let on = (&self.setting.grid, self.setting.boundary);
+        let fields = &solution.fields;
+        let found =
+            detached(py, || of_contact(&fields.pressure, &fields.contact_map, on, e_star))??;
+        Ok(warn_all(py, found)?)
+    }
+
     fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Thread> {
         self.thread.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
@@ -223,6 +236,7 @@ fn sweep(
             ask,
             answers: Some(Answers::new(answers)),
             is_asked: false,
+            kept: None,
             left: count,
         }),
         count,

@@ -17,7 +17,7 @@ use crate::arrays::{column, rows};
 use crate::choice::{choose, connectivity};
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
-use crate::history::{History, Setting};
+use crate::history::{History, Setting, check_on_path};
 use crate::path::LoadingPath;
 use crate::results::result;
 use crate::state::State;
@@ -251,6 +251,7 @@ impl PatchAnalysis {
     /// PatchMap
     ///     Without loads: ``label_patches(path.contact_map(state), ..., pressure=path.pressure(state))`` has them.
     fn at(&self, py: Python<'_>, state: PyRef<'_, State>) -> Fallible<PatchMap> {
+        check_on_path(&self.history, &state.state)?;
         let contact = self.contact.map_at(state.state.contact.contact_nodes);
         label(py, &contact, None, &self.setting, self.connectivity)
     }

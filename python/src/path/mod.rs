@@ -26,7 +26,7 @@ use crate::arrays::{column, rows, shape};
 use crate::choice;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
-use crate::history::{History, Setting};
+use crate::history::{History, Setting, check_on_path};
 use crate::results::result;
 use crate::state::State;
 use crate::surface::Surface;
@@ -85,7 +85,10 @@ impl LoadingPath {
     /// The state that is meant: the one given, or the last one.
     fn state_or_last(inner: &Inner, state: Option<PyRef<'_, State>>) -> Fallible<LoadingState> {
         match state {
-            Some(state) => Ok(state.state),
+            Some(state) => {
+                check_on_path(&inner.history, &state.state)?;
+                Ok(state.state)
+            }
             None => inner.present().ok_or_else(|| {
                 Error::OutOfRange {
                     quantity: "number of states so far",

@@ -26,7 +26,8 @@ use crate::warnings::warn;
 /// channel : str, optional
 ///     Name of the map, in a file with several.
 /// size : (float, float) or float, optional
-///     Sides ``(x, y)`` [m] in place of what the file says; one number is the side along x, with square cells.
+///     Sides ``(x, y)`` [m] in place of what the file says; one number is the side along x, of a single column along y, with
+///     square cells.
 /// height_unit, lateral_unit : str, optional
 ///     Units in place of those in the file.
 /// layout : {"matrix", "x-row", "y-column", "axes", "points"}, optional

@@ -15,11 +15,17 @@ use crate::errors::{Failure, Fallible};
 /// Nodes beyond which a surface has to leave room for its path: less than that is not made in vain.
 const LARGE: usize = 1 << 26;
 
+/// `Ok` if there is room for a surface on a grid, and for its path.
+pub(super) fn check_room(grid: &Grid) -> Result<(), asperity::Error> {
+    match grid.nodes() > LARGE {
+        true => LoadingSolver::check_room(grid, asperity::Boundary::Free, None),
+        false => Ok(()),
+    }
+}
+
 /// The heights of a shape on a grid.
 fn sampled(py: Python<'_>, shape: &(impl Heights + Sync), grid: Grid) -> Fallible<Surface> {
-    if grid.nodes() > LARGE {
-        LoadingSolver::check_room(&grid, asperity::Boundary::Free, None)?;
-    }
+    check_room(&grid)?;
     Ok(Surface::of(detached(py, || Topography::sample(shape, grid))??))
 }
 
@@ -80,7 +86,7 @@ fn self_affine(
 /// The surface of the program's first command: self-affine, after Zhang, Zhang & Jin, Friction 8 (2020) 970.
 ///
 /// Hurst exponent 0.8, rms height 50 µm, roll-off at 2.5 mm, and a shortest wavelength that the grid resolves: eight cells,
-/// but not less than 78.125 µm.
+/// but not less than 78.125 µm and not more than the roll-off.
 ///
 /// Parameters
 /// ----------

@@ -8,14 +8,16 @@ mod statistics;
 use std::path::PathBuf;
 
 use asperity::nalgebra::DMatrix;
-use asperity::surface::{Topography, Window, count_missing, fill_missing};
+use asperity::surface::{
+    Filter, Interpolation, Topography, Trend, Window, count_missing, fill_missing,
+};
 use asperity::{Error, Grid, Surface as _, Warning};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::argument::one_of;
-use crate::arrays::{self, Lengths};
+use crate::arrays::{self, Found, Kind, Lengths};
 use crate::choice;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible, in_python};
@@ -106,6 +108,11 @@ impl Surface {
     /// What was made of this surface.
     fn with(&self, topography: Topography) -> Self {
         Self { title: self.title.clone(), periodic: self.periodic, ..Self::of(topography) }
+    }
+
+    /// The same heights; nothing is known of whether they repeat unless what was made of the whole still does.
+    fn repeats_if(self, keeps: bool) -> Self {
+        Self { periodic: self.periodic.filter(|_| keeps), ..self }
     }
 
     pub(crate) fn grid(&self) -> &Grid {
@@ -256,7 +263,7 @@ impl Surface {
     #[pyo3(signature = (trend="plane"))]
     fn level(&self, py: Python<'_>, trend: &str) -> Fallible<Self> {
         let trend = choice::trend(trend)?;
-        self.made(py, |surface| surface.level(trend))
+        Ok(self.made(py, |surface| surface.level(trend))?.repeats_if(trend == Trend::Mean))
     }
 
     /// The trend that `level` would take off.
@@ -273,7 +280,8 @@ impl Surface {
         statistics::trend(py, self.topography()?, choice::trend(trend)?)
     }
 
-    /// A piece of the surface. Nothing is said of whether it repeats, unless it is the whole.
+    /// A piece of the surface, which may have no missing nodes where the whole has some. Nothing is said of whether it
+    /// repeats, unless it is the whole.
     ///
     /// Parameters
     /// ----------
@@ -291,8 +299,16 @@ impl Surface {
         };
         let (columns, rows) = (of(columns, self.grid.nx()), of(rows, self.grid.ny()));
         let is_whole = (rows.len(), columns.len()) == self.shape();
-        let piece = self.made(py, |surface| surface.crop(columns, rows))?;
-        Ok(Self { periodic: self.periodic.filter(|_| is_whole), ..piece })
+        // Of a surface with holes too: a piece may have none.
+        let matrix = self.matrix();
+        let piece = detached(py, || {
+            let first = (columns.start, rows.start);
+            let blank = Topography::new(self.grid, DMatrix::zeros(matrix.nrows(), matrix.ncols()))?;
+            let grid = *blank.crop(columns, rows)?.grid();
+            Self::new(grid, matrix.view(first, grid.shape()).into_owned())
+        })??;
+        let piece = Self { title: self.title.clone(), periodic: self.periodic, ..piece };
+        Ok(piece.repeats_if(is_whole))
     }
 
     /// The same surface on another number of nodes.
@@ -310,7 +326,10 @@ impl Surface {
     #[pyo3(signature = (shape, method="bilinear"))]
     fn resample(&self, py: Python<'_>, shape: (usize, usize), method: &str) -> Fallible<Self> {
         let method = choice::interpolation(method)?;
-        self.made(py, |surface| surface.resample(shape.1, shape.0, method))
+        let (lx, ly) = self.grid.sides();
+        generate::check_room(&Grid::with_sides(shape.1, shape.0, lx, ly)?)?;
+        let made = self.made(py, |surface| surface.resample(shape.1, shape.0, method))?;
+        Ok(made.repeats_if(method == Interpolation::Fourier))
     }
 
     /// Keep the long waves.
@@ -328,7 +347,8 @@ impl Surface {
     #[pyo3(signature = (cutoff, filter="gaussian"))]
     fn low_pass(&self, py: Python<'_>, cutoff: f64, filter: &str) -> Fallible<Self> {
         let filter = choice::filter(filter)?;
-        self.made(py, |surface| surface.low_pass(cutoff, filter))
+        let made = self.made(py, |surface| surface.low_pass(cutoff, filter))?;
+        Ok(made.repeats_if(filter == Filter::Sharp))
     }
 
     /// Keep the short waves: the surface less its `low_pass`.
@@ -345,7 +365,8 @@ impl Surface {
     #[pyo3(signature = (cutoff, filter="gaussian"))]
     fn high_pass(&self, py: Python<'_>, cutoff: f64, filter: &str) -> Fallible<Self> {
         let filter = choice::filter(filter)?;
-        self.made(py, |surface| surface.high_pass(cutoff, filter))
+        let made = self.made(py, |surface| surface.high_pass(cutoff, filter))?;
+        Ok(made.repeats_if(filter == Filter::Sharp))
     }
 
     /// Heights above their mean times a weight that falls to zero at the border, before a spectrum of a map that does not
@@ -424,9 +445,6 @@ impl Surface {
 
     /// The composite roughness of two surfaces on the same grid. It repeats if both do.
     fn __add__(&self, py: Python<'_>, other: PyRef<'_, Self>) -> Fallible<Self> {
-        if other.grid != self.grid {
-            return Err(Failure::arguments("surfaces on different grids cannot be added"));
-        }
         let second = other.topography()?;
         let sum = |first: &Topography| Topography::sample(&first.plus(second), *first.grid());
         let both = self.periodic.zip(other.periodic);
@@ -499,7 +517,8 @@ impl Surface {
         Ok(self.topography()?.rms_curvature())
     }
 
-    /// Shortest and longest wavelength [m] that the map can hold.
+    /// Shortest wavelength [m] of which the map has waves in all directions, and the longest that it has in one: two cells, of
+    /// the longer side, and the longer side of the map.
     #[getter]
     fn bandwidth(&self) -> Fallible<(f64, f64)> {
         Ok(self.topography()?.bandwidth())
@@ -581,7 +600,7 @@ impl Surface {
     ///
     /// Parameters
     /// ----------
-    /// heights : array_like
+    /// heights : array_like, one-dimensional
     ///     Heights [m] in the values of the surface.
     ///
     /// Returns
@@ -590,8 +609,9 @@ impl Surface {
     fn material_ratio<'py>(
         &self,
         py: Python<'py>,
-        heights: Vec<f64>,
+        heights: &Bound<'py, PyAny>,
     ) -> Fallible<Bound<'py, PyAny>> {
+        let heights = Found::of(heights, "heights", Kind::Real)?.list()?;
         statistics::material_ratio(py, self.topography()?, &heights)
     }
 
@@ -668,7 +688,7 @@ fn _restore_surface(
     words: (String, String, Vec<String>),
     periodic: Option<bool>,
 ) -> Fallible<Surface> {
-    let found = arrays::Found::of(z, "z", arrays::Kind::Real)?;
+    let found = Found::of(z, "z", Kind::Real)?;
     let (rows, columns) = found.rows_and_columns()?;
     let grid = Grid::new(columns, rows, cell.0, cell.1)?;
     let (title, understood, notes) = words;

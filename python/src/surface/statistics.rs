@@ -4,6 +4,7 @@ use asperity::surface::{
     Axis, Estimate, MaterialRatio, RadialBins, SpectralBin, Topography, Trend,
 };
 use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyString};
 
 use crate::arrays::{Found, Kind, column};
 use crate::compute::detached;
@@ -49,13 +50,16 @@ pub(super) fn radial_psd<'py>(
             RadialBins::Linear
         }
         Some(bins) => match bins.extract::<usize>() {
-            Ok(number) => RadialBins::PerDecade(number),
-            Err(_) if bins.is_instance_of::<pyo3::types::PyString>() => {
+            Ok(number) if !bins.is_instance_of::<PyBool>() => RadialBins::PerDecade(number),
+            // An array, or a sequence that is no text.
+            _ if bins.hasattr("__len__")? && !bins.is_instance_of::<PyString>() => {
+                RadialBins::Edges(Found::of(bins, "bins", Kind::Real)?.list()?)
+            }
+            _ => {
                 return Err(Failure::arguments(
                     "bins must be 'linear', a number of rings in a decade, or wavevectors",
                 ));
             }
-            Err(_) => RadialBins::Edges(Found::of(bins, "bins", Kind::Real)?.list()?),
         },
     };
     let spectrum = detached(py, || surface.radial_psd(&bins))??;
