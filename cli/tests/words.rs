@@ -248,7 +248,10 @@ fn units_are_understood_and_chosen() -> Done {
         .map(|line| line.split_whitespace().collect())
         .unwrap_or_default();
     assert_eq!(header, ["N", "MPa", "MPa", "mm²", "%", "%", "mm", "mm", "N/mm", "N/mm"]);
-    for (name, values, unit) in [("pressure", pressure, 1e-6), ("overclosure", overclosure, 1e3)] {
+    // Its names tell the units.
+    for (name, values, unit) in
+        [("pressure [MPa]", pressure, 1e-6), ("overclosure [mm]", overclosure, 1e3)]
+    {
         for (found, value) in numbers(&file, name)?.iter().zip(values) {
             assert!((found - unit * value).abs() <= 1e-12 * found, "{name}: {found} {value}");
         }
@@ -320,6 +323,7 @@ fn generated_surfaces_have_the_roughness_that_is_asked_for() -> Done {
             format!("path --nodes 64 --side 1mm --max-area-fraction 1% {options} --record r.npz");
         run(&folder.0, &line)?;
         let record = asperity::record::LoadingRecord::read_npz(folder.join("r.npz"))?;
+        fs::remove_file(folder.join("r.npz"))?;
         Ok(Topography::new(record.grid(), record.heights().matrix().clone())?)
     };
     let base = "--hurst 0.9 --rolloff 0.25mm";

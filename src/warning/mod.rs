@@ -81,6 +81,11 @@ pub enum Warning {
         /// Radius of curvature of the highest summit \[m\].
         radius: f64,
     },
+    /// A work of adhesion that no two solids have.
+    StrongAdhesion {
+        /// Work of adhesion \[J/m²\].
+        work: f64,
+    },
     /// Fluid that would open the gap through which it leaks.
     PressureDrop {
         /// Pressure drop of the fluid \[Pa\].
@@ -115,6 +120,8 @@ const LIKE: f64 = 2.0;
 const HARDNESSES: std::ops::RangeInclusive<f64> = 1e-5..=0.3;
 /// Moduli of solids lie between that of soft rubber and that of diamond \[Pa\].
 const SOLIDS: std::ops::RangeInclusive<f64> = 1e6..=2e12;
+/// Bonds of solids, broken slowly, take less \[J/m²\]: twice the surface energy of tungsten is 7.
+const STRONGEST: f64 = 10.0;
 /// Pressure drop over mean pressure. Half of the drop, its mean, takes load off the contact. Leak rates fall as the
 /// second power of the load far from the closing of the last channel and as the twentieth power near it, so that a
 /// fiftieth changes them by 2 to 20 %.
@@ -248,7 +255,8 @@ impl Warning {
             let cells = law.pull_off_radius(radius, e_star) / cell;
             (cells < CELLS_OF_SUMMIT).then_some(Self::SmallSummits { cells, radius })
         });
-        steep.into_iter().chain(small).collect()
+        let strong = (law.work() > STRONGEST).then(|| Self::StrongAdhesion { work: law.work() });
+        strong.into_iter().chain(steep).chain(small).collect()
     }
 
     /// Warnings about the pressure drop of a fluid that leaks through contacts under these mean pressures \[Pa\].
@@ -358,6 +366,12 @@ impl fmt::Display for Warning {
                  the pull-off force depends on the mesh. Use a finer grid, or a smoother surface",
                 quantity(radius, "m", 3),
                 significant(cells, 2)
+            ),
+            Self::StrongAdhesion { work } => write!(
+                f,
+                "a work of adhesion of {} is above that of any two solids at rest, some {}: is it in J/m², and not in mJ/m²?",
+                quantity(work, "J/m²", 4),
+                quantity(STRONGEST, "J/m²", 4)
             ),
             Self::PressureDrop { pressure_drop, mean_pressure, states } => {
                 write!(

@@ -39,6 +39,7 @@ fn a_warning_that_does_not_fit_is_an_error() {
         Warning::WideCells { cell: 2.0, thickness: 1.0 },
         Warning::SteepLaw { resolution: 0.6, cell: 1e-6, cell_needed: 8e-7 },
         Warning::SmallSummits { cells: 2.0, radius: 1e-6 },
+        Warning::StrongAdhesion { work: 50.0 },
         Warning::PressureDrop { pressure_drop: 1.0, mean_pressure: 2.0, states: 3 },
         Warning::Modulus { e_star },
         Warning::Modulus { e_star: 1e-9 },
@@ -353,8 +354,13 @@ fn laws_and_summits_that_the_grid_does_not_resolve_are_noticed() -> Result<(), E
                 if let Warning::SmallSummits { cells: told, radius: of_summit } = warning {
                     assert!(same(told, cells) && same(of_summit, radius(cells)), "{warning:?}");
                 }
+                assert!(!matches!(warning, Warning::StrongAdhesion { .. }), "{warning:?}");
             }
         }
     }
+    // 50 mJ/m² taken for J/m².
+    let strong = Adhesion::work(50.0).on(&half_space)?;
+    let found = Warning::of_adhesion(&ball(&grid, 1e-5, (0.5, 0.5))?, &strong, e_star);
+    assert!(matches!(found[..], [Warning::StrongAdhesion { work: 50.0 }, ..]), "{found:?}");
     Ok(())
 }

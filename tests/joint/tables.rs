@@ -220,6 +220,14 @@ fn tables_may_be_in_millimetres() {
             }
         }
     }
+    let names = |table: &InterfaceTable, units: FeUnits| {
+        table.text_in(FeProgram::Csv, units).lines().next().unwrap().to_string()
+    };
+    assert!(names(&heat, FeUnits::Si).starts_with("pressure,overclosure,thermal_conductance,"));
+    let told = "pressure [MPa],overclosure [mm],thermal_conductance [mW/(mm2 K)],";
+    assert!(names(&heat, FeUnits::Millimetres).starts_with(told));
+    let told = "pressure [MPa],overclosure [mm],electrical_conductance [A/(mV mm2)]";
+    assert!(names(&current, FeUnits::Millimetres).starts_with(told));
     for program in [FeProgram::Abaqus, FeProgram::CalculiX, FeProgram::Moose] {
         let text = heat.text_in(program, FeUnits::Millimetres);
         assert!(text.lines().next().unwrap().contains("in mm, N, MPa, t, s, A"), "{text}");
