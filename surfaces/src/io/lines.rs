@@ -53,16 +53,28 @@ impl<'a> Iterator for Lines<'a> {
 impl Line<'_> {
     /// Whether the line is a remark.
     pub(super) fn is_comment(&self) -> bool {
-        match self.bytes.trim_ascii_start() {
-            // What a spreadsheet writes for a missing value.
-            [b'#', b'N' | b'n', b'/', ..] => false,
-            [b'#' | b'%', ..] => true,
-            _ => false,
-        }
+        let line = self.bytes.trim_ascii_start();
+        matches!(line, [b'#' | b'%', ..]) && !begins_with_error(line)
     }
 
     /// The line as text: UTF-8, or what older programs write.
     pub(super) fn text(&self) -> String {
         std::str::from_utf8(self.bytes).map_or_else(|_| latin1(self.bytes), str::to_string)
     }
+}
+
+/// Whether the first word of a line is what a spreadsheet writes in place of a number: `#N/A`, `#NV`, `#DIV/0!`,
+/// `#NAME?`, or `####` in a column that is too narrow.
+fn begins_with_error(line: &[u8]) -> bool {
+    let is_end = |byte: &u8| matches!(byte, b' ' | b'\t' | b';' | b',');
+    let (word, rest) = line.split_at(line.iter().position(is_end).unwrap_or(line.len()));
+    let begins =
+        |start: &[u8]| word.get(..3).is_some_and(|begin| begin.eq_ignore_ascii_case(start));
+    let is_rule = word.iter().all(|byte| *byte == b'#');
+    begins(b"#N/")
+        || begins(b"#NV") && word.len() == 3
+        || word.starts_with(b"#") && word.ends_with(b"!")
+        || word.starts_with(b"#") && word.ends_with(b"?")
+        // A row of them alone, or before words, is an ornament.
+        || word.len() > 1 && is_rule && matches!(rest, [b'\t' | b';' | b',', ..])
 }

@@ -6,6 +6,8 @@
 //! section `DataSet`; their integers follow in the same order, each image from its lowest row on. `Dim2Range` is what
 //! all integers of that length span, from `Dim2Min` on.
 
+use std::collections::HashMap;
+
 use super::bytes::{Bytes, Order, find, shape, shared};
 use super::fault::Fault;
 use super::number::Number;
@@ -25,6 +27,9 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let end = find(file, END).ok_or_else(|| fault!("the header has no end, '#!'"))?;
     let sections = Section::all(file.get(..end).unwrap_or_default(), &STYLE);
     let set = sections.first().ok_or_else(|| fault!("the header has no section"))?;
+    // The first of each name; there are as many as the header has room for.
+    let named: HashMap<&[u8], &Section> =
+        sections.iter().rev().map(|section| (section.name, section)).collect();
     let mut bytes = Bytes::from(file, end + END.len())?;
     let mut channels = Vec::new();
     let groups: usize = set.number("GroupCount")?;
@@ -36,7 +41,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
             let Some(name) = set.get(&format!("Gr{group}-Ch{channel}")) else {
                 continue;
             };
-            let section = sections.iter().find(|section| section.name == name.as_bytes());
+            let section = named.get(name.as_bytes());
             let section = section.ok_or_else(|| fault!("there is no section '{name}'"))?;
             channels.extend(image(section, &mut bytes)?);
         }

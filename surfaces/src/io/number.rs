@@ -89,10 +89,12 @@ pub(super) fn parsed<T: std::str::FromStr>(
     })
 }
 
-/// `Ok(value)` if it is positive and finite, the defect of the file at this place otherwise.
+/// `Ok(value)` if it is positive and finite, the defect of the field of this name, and place if it has one, otherwise.
 #[cfg(feature = "io")]
-pub(super) fn positive(name: &str, value: f64, at: usize) -> Result<f64, Fault> {
-    let is_positive = value > 0.0 && value.is_finite();
-    ensure!(is_positive, at(at), "{name} is {value}, but a positive number was expected");
-    Ok(value)
+pub(super) fn positive(name: &str, value: f64, at: impl Into<Option<usize>>) -> Result<f64, Fault> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    let reason = format!("{name} is {value}, but a positive number was expected");
+    Err(Fault::Malformed { offset: at.into(), reason })
 }

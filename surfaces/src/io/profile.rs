@@ -21,6 +21,34 @@ pub(super) fn understood(points: usize) -> String {
     format!("a profile of {}", counted(points, "point"))
 }
 
+/// Whether numbers that are known are not all the same.
+pub(super) fn varies(numbers: &[f64]) -> bool {
+    let mut known = numbers.iter().filter(|number| number.is_finite());
+    let first = known.next();
+    known.any(|number| Some(number) != first)
+}
+
+/// How far along their line points are, from one to the next; steps back against its direction are negative.
+pub(super) fn along(x: &[f64], y: &[f64]) -> Vec<f64> {
+    let whole = |places: &[f64]| match (places.first(), places.last()) {
+        (Some(first), Some(last)) => last - first,
+        _ => 0.0,
+    };
+    let (whole_x, whole_y) = (whole(x), whole(y));
+    let mut place = 0.0;
+    let mut before = x.first().copied().zip(y.first().copied());
+    let points = x.iter().copied().zip(y.iter().copied());
+    points
+        .map(|(x, y)| {
+            let (dx, dy) =
+                before.map_or((0.0, 0.0), |(before_x, before_y)| (x - before_x, y - before_y));
+            before = Some((x, y));
+            place += (dx * dx + dy * dy).sqrt().copysign(dx * whole_x + dy * whole_y);
+            place
+        })
+        .collect()
+}
+
 /// Heights at even steps, and the step: those of the file if its steps are even, otherwise between them on straight
 /// lines.
 pub(super) fn on_even_steps(

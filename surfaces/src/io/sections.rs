@@ -1,14 +1,18 @@
 //! Headers of lines with a key and a value, in sections that begin with a line of their own.
 
+use std::collections::HashMap;
+
 use super::fault::Fault;
 use super::lines::Lines;
 use super::number::parsed;
 
 /// A section of a header: its name, and its lines.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Section<'a> {
     pub(super) name: &'a [u8],
     lines: &'a [u8],
+    /// The first value of each key, in small letters: asked for so often that lines are not searched each time.
+    values: HashMap<String, String>,
     /// What is before a key, and what is between key and value.
     mark: &'static str,
     between: char,
@@ -37,23 +41,36 @@ impl<'a> Section<'a> {
             }
             start = line.offset + line.bytes.len();
             let lines = header.get(start..).unwrap_or_default();
-            sections.push(Self { name, lines, mark: style.mark, between: style.between });
+            let (mark, between) = (style.mark, style.between);
+            sections.push(Self { name, lines, values: HashMap::new(), mark, between });
+        }
+        for section in &mut sections {
+            let mut values = HashMap::new();
+            for (key, value) in section.pairs() {
+                values.entry(key.to_ascii_lowercase()).or_insert(value);
+            }
+            section.values = values;
         }
         sections
     }
 
-    /// The value of the first line with such a key.
-    pub(super) fn find(&self, is_it: impl Fn(&str) -> bool) -> Option<String> {
-        Lines::new(self.lines, 0).find_map(|line| {
+    /// Keys and values, line by line.
+    fn pairs(&self) -> impl Iterator<Item = (String, String)> {
+        Lines::new(self.lines, 0).filter_map(|line| {
             let text = line.text();
             let (key, value) = split(text.strip_prefix(self.mark)?, self.between)?;
-            is_it(key.trim()).then(|| value.trim().to_string())
+            Some((key.trim().to_string(), value.trim().to_string()))
         })
+    }
+
+    /// The value of the first line with such a key.
+    pub(super) fn find(&self, is_it: impl Fn(&str) -> bool) -> Option<String> {
+        self.pairs().find(|(key, _)| is_it(key)).map(|(_, value)| value)
     }
 
     /// The value of a key, in letters of any size.
     pub(super) fn get(&self, key: &str) -> Option<String> {
-        self.find(|found| found.eq_ignore_ascii_case(key))
+        self.values.get(&key.to_ascii_lowercase()).cloned()
     }
 
     /// The value of a key that has to be there.

@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Error;
 use crate::FileError;
@@ -58,9 +59,38 @@ pub fn write_whole(
     written.map_err(named)
 }
 
-/// The name of a file while it is written.
+/// The name of a file while it is written: another one each time, since several threads may write the same file.
 fn unfinished(path: &Path) -> PathBuf {
+    static WRITTEN: AtomicU64 = AtomicU64::new(0);
+    let count = WRITTEN.fetch_add(1, Ordering::Relaxed);
     let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.unfinished", std::process::id()));
+    name.push(format!(".{}.{count}.unfinished", std::process::id()));
     path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whichever of several threads is last, the file is a whole one.
+    #[test]
+    fn threads_that_write_one_file_do_not_disturb_each_other() -> std::io::Result<()> {
+        let path = std::env::temp_dir().join(format!("asperity-whole-{}.txt", std::process::id()));
+        let write = |letter: char| {
+            let text = letter.to_string().repeat(1 << 16);
+            (0..20).try_for_each(|_| write_whole(&path, |output| output.write_all(text.as_bytes())))
+        };
+        let failures: Vec<String> = std::thread::scope(|scope| {
+            let threads: Vec<_> =
+                ['a', 'b', 'c', 'd'].map(|letter| scope.spawn(move || write(letter))).into();
+            let ends = threads.into_iter().filter_map(|thread| thread.join().ok());
+            ends.filter_map(|end| end.err().map(|error| error.to_string())).collect()
+        });
+        let text = fs::read_to_string(&path)?;
+        fs::remove_file(&path)?;
+        assert!(failures.is_empty(), "{failures:?}");
+        let first = text.chars().next();
+        assert!(text.len() == 1 << 16 && text.chars().all(|letter| Some(letter) == first));
+        Ok(())
+    }
 }

@@ -203,6 +203,18 @@ fn a_long_text_is_not_taken_once_for_each_map() {
     }
 }
 
+/// A long section that each of many maps asks for its keys.
+#[test]
+fn a_long_section_is_not_searched_once_for_each_map() {
+    let lines: String = (0..5000).map(|k| format!("\nk{k}=x")).collect();
+    let file = nid(&format!("x{lines}"), 4096);
+    let start = std::time::Instant::now();
+    let told = ReadOptions::new().read_bytes(&file, "long.nid").unwrap_err().to_string();
+    let seconds = start.elapsed().as_secs_f64();
+    assert!(told.contains("[4096]"), "{}", &told[..200]);
+    assert!(seconds < 5.0, "{seconds} s for {} bytes", file.len());
+}
+
 /// Maps of one node under one title.
 fn opd(title: &str, maps: usize) -> Vec<u8> {
     let entry = |name: &str, length: usize| {

@@ -8,7 +8,7 @@
 //! type, so large that it can only be a marker. The types of numbers are those of both families in each of them:
 //! instruments do not keep to the standard there.
 //!
-//! A profile is a map of one line; instruments write 0 or anything else for its spacing along y.
+//! A profile is a map of one line; instruments write 0 or anything else for its spacing along y, which is not used.
 //!
 //! What follows the heights, a trailer, may be anything and is not read.
 
@@ -102,11 +102,9 @@ impl Header {
 
     /// The map of these heights.
     fn channel(&self, heights: Vec<f64>, note: Option<String>) -> Channel {
-        let (dx, dy) = self.spacing;
-        let is_profile = self.shape.1 == 1 && !(dy > 0.0 && dy.is_finite());
-        let mut channel = match is_profile {
-            true => profile::channel(heights, dx),
-            false => Channel::in_metres(self.shape, heights, Some(self.spacing)),
+        let mut channel = match self.shape.1 {
+            1 => profile::channel(heights, self.spacing.0),
+            _ => Channel::in_metres(self.shape, heights, Some(self.spacing)),
         };
         channel.notes.extend(note);
         channel.notes.extend(self.least_in_bcr(&channel.values));

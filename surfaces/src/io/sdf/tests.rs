@@ -97,6 +97,18 @@ fn nan_is_missing_in_every_family() -> Result<(), Fault> {
     Ok(())
 }
 
+/// A profile has no width, whatever stands for its spacing along y.
+#[test]
+fn one_line_is_a_profile() -> Result<(), Fault> {
+    let data = [5_i16, 6].map(i16::to_le_bytes).concat();
+    let found = only(parse(&binary("bISO-1.0", 2, 1, 5, &data)))?;
+    assert_eq!(
+        (found.cell, found.understood.as_str()),
+        (Some((2e-6, 2e-6)), "a profile of 2 points")
+    );
+    Ok(())
+}
+
 #[test]
 fn the_longer_header_of_olympus_is_understood() -> Result<(), Fault> {
     let values = [5_i16, 6].map(i16::to_le_bytes).concat();

@@ -9,15 +9,14 @@ use super::table::Table;
 use crate::io::fault::Fault;
 use crate::number::counted;
 
-/// Most columns of a list of points without names.
-const MOST_COLUMNS: usize = 8;
+/// Most columns of a list of points without names: beside x, y and z a normal, a colour and what else was measured.
+const MOST_COLUMNS: usize = 12;
+
+/// How many times as many rows as columns a matrix has at most that nothing but its looks says to be one.
+const LONGEST: usize = 10;
 
 /// Most rows of a matrix with fewer than three columns that nothing but its looks says to be one.
 pub(super) const FEW_ROWS: usize = 3;
-
-/// What is said of three columns with a defect, of which nothing says that they are points.
-const UNDECLARED: &str = "three columns are taken for points x, y, z unless lines '# Width: 1 mm' and \
-    '# Height: 1 mm' or `ReadOptions::layout` say that they are a matrix: ";
 
 /// What a table is.
 pub(super) enum Found {
@@ -32,30 +31,41 @@ pub(super) type List = Box<(Columns, points::Map)>;
 /// What a table is whose columns have no names, `is_list` if anything else says that it has points.
 pub(super) fn of(header: &Header, table: &Table, is_list: bool) -> Result<Found, Fault> {
     let matrices = || axes::plausible(header, table);
+    let with_points = || Ok::<_, Fault>([matrices()?, vec![TextLayout::Points]].concat());
+    let (columns, rows) = (table.columns, table.rows());
     ensure!(table.values.len() > 1 || header.counts(), "one number is no surface");
-    if header.is_of_matrix() {
-        return choose(table, &matrices()?);
-    }
     if is_list {
         return points(table).map(Found::Points);
     }
-    let columns = table.columns;
-    if columns <= 2 && table.rows() > FEW_ROWS {
+    if header.is_of_matrix() {
+        let is_counted = |(nx, ny)| header.counts() && header.has_counts(nx, ny);
+        return match looks(table) {
+            Looks::Points(list) if is_counted(list.1.shape()) => Ok(Found::Points(list)),
+            Looks::Points(_) if !is_counted((columns, rows)) => choose(table, &with_points()?),
+            _ => choose(table, &matrices()?),
+        };
+    }
+    if columns <= 2 && rows > FEW_ROWS {
         if let (Some(line), None) = (header.of_map(), names::of_profile(header, table)) {
             bail!(
                 "the line '{line}' is one of a map, but {} of {} are taken for a profile: as a map they are read with \
                  `ReadOptions::layout`, as a profile without this line, or below names of their columns",
-                counted(table.rows(), "row"),
+                counted(rows, "row"),
                 counted(columns, "number")
             );
         }
         return Ok(Found::Profile);
     }
+    let is_long = (3..=MOST_COLUMNS).contains(&columns) && rows > LONGEST * columns;
     match looks(table) {
         // No heights are coordinates of most of a grid, each once, by chance.
         Looks::Points(list) => Ok(Found::Points(list)),
-        Looks::Anything => choose(table, &[matrices()?, vec![TextLayout::Points]].concat()),
-        Looks::NoPoints(fault) if columns == 3 => Err(fault.prefixed(UNDECLARED)),
+        Looks::Anything => choose(table, &with_points()?),
+        Looks::NoPoints(fault) if columns == 3 || is_long => Err(fault.prefixed(&format!(
+            "{} of {columns} numbers are taken for points x, y, z unless lines '# Width: 1 mm' and '# Height: 1 mm' or \
+             `ReadOptions::layout` say that they are a matrix: ",
+            counted(rows, "row")
+        ))),
         Looks::NoPoints(_) => choose(table, &matrices()?),
     }
 }
@@ -66,8 +76,13 @@ fn choose(table: &Table, layouts: &[TextLayout]) -> Result<Found, Fault> {
         return Ok(Found::Matrix(*only));
     }
     let ways: Vec<String> = layouts.iter().map(|layout| layout.told(table)).collect();
+    let or_else = if table.columns <= 2 && table.rows() > FEW_ROWS {
+        "; without the lines that say that it is a map, it is a profile"
+    } else {
+        ""
+    };
     Err(fault!(
-        "its numbers can be read in {} ways, and the file does not say which is meant: {}; choose one with `ReadOptions::layout`",
+        "its numbers can be read in {} ways, and the file does not say which is meant: {}; choose one with `ReadOptions::layout`{or_else}",
         ways.len(),
         ways.join("; ")
     ))

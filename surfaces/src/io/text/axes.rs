@@ -33,6 +33,8 @@ struct Run {
 pub(super) struct Axes {
     /// Spacing along x and y, if positions give both.
     pub(super) cell: Option<(f64, f64)>,
+    /// Steps of what is along x, and along y.
+    pub(super) steps: [Option<f64>; 2],
     /// What the first row and the first column were taken for.
     pub(super) notes: Vec<String>,
 }
@@ -55,6 +57,7 @@ pub(super) fn take(table: &mut Table, layout: TextLayout) -> Result<Axes, Fault>
     axes.notes.extend(y.map(|run| run.told("column", "y")));
     let positions = x.zip(y).filter(|(x, y)| !x.counts() && !y.counts());
     axes.cell = positions.map(|(x, y)| (x.step.abs(), y.step.abs()));
+    axes.steps = [x, y].map(|run| run.map(|run| run.step.abs()));
     let (skipped_rows, skipped_columns) = (usize::from(along_x), usize::from(along_y));
     let mut place = 0;
     table.values.retain(|_| {
@@ -178,6 +181,11 @@ impl Side {
                 && goes_on([0, 1, 2, 3].map(|k| if k < count { line(k) } else { Vec::new() })),
         }
     }
+}
+
+/// Whether numbers can be positions.
+pub(super) fn are_positions(numbers: &[f64]) -> bool {
+    Run::of(numbers, UNEVEN).is_some()
 }
 
 /// Whether four lines are those of a surface of second degree across them, and of none of first degree.

@@ -12,10 +12,12 @@ use crate::io::lines::{Line, Lines};
 pub(super) struct Dialect {
     pub(super) separator: Option<u8>,
     decimal_comma: bool,
+    /// Whether there is a decimal point, or a point that parts thousands.
+    pub(super) has_points: bool,
     /// Whether every line is digits, a comma, digits: a decimal comma would look the same.
     pub(super) has_one_comma: bool,
-    /// Whether whole numbers between commas begin with zeros, as what follows a decimal comma does.
-    pub(super) has_leading_zeros: bool,
+    /// Why commas between numbers could be decimal, if anything says so.
+    pub(super) doubt: Option<&'static str>,
 }
 
 /// The longest number that is read: a double in full takes 1079 digits, but nobody writes them.
@@ -26,8 +28,9 @@ impl Dialect {
     pub(super) const BLANKS: Self = Self {
         separator: None,
         decimal_comma: false,
+        has_points: false,
         has_one_comma: false,
-        has_leading_zeros: false,
+        doubt: None,
     };
 
     /// The dialect of the lines of numbers in a file.
@@ -48,11 +51,21 @@ impl Dialect {
             None
         };
         let has_one_comma = separator == Some(b',')
-            && rows().filter(|line| !line.bytes.trim_ascii().is_empty()).all(is_one_comma);
-        let has_leading_zeros = separator == Some(b',')
-            && !has(b'.')
-            && rows().any(|line| line.bytes.split(|byte| *byte == b',').any(begins_with_zero));
-        Self { separator, decimal_comma, has_one_comma, has_leading_zeros }
+            && rows()
+                .map(|line| line.bytes)
+                .filter(|line| !line.trim_ascii().is_empty())
+                .all(is_one_comma);
+        let has_points = has(b'.');
+        let doubt = if separator != Some(b',') || has_points {
+            None
+        } else if rows().any(|line| line.bytes.split(|byte| *byte == b',').any(begins_with_zero)) {
+            Some("numbers parted by commas begin with zeros, as what follows a decimal comma does")
+        } else if commas_are_of_two_kinds(rows()) {
+            Some("blanks follow some commas, but others stand within numbers, as decimal commas do")
+        } else {
+            None
+        };
+        Self { separator, decimal_comma, has_points, has_one_comma, doubt }
     }
 
     /// How a text is written.
@@ -92,13 +105,23 @@ impl Dialect {
     }
 }
 
+/// A number with a decimal point; a minus may be the sign of typesetters.
 fn parse(word: &[u8]) -> Option<f64> {
-    str::from_utf8(word).ok()?.parse().ok()
+    let word = str::from_utf8(word).ok()?;
+    match word.strip_prefix('\u{2212}') {
+        Some(digits)
+            if digits.starts_with(|first: char| first.is_ascii_digit() || first == '.') =>
+        {
+            digits.parse().ok().map(|number: f64| -number)
+        }
+        _ => word.parse().ok(),
+    }
 }
 
 /// Words for a missing value, but for those that are numbers to everybody: `NaN`, `inf`.
 fn means_missing(word: &[u8]) -> bool {
-    const WORDS: [&str; 8] = ["bad", "na", "n/a", "#n/a", "null", "none", "missing", "masked"];
+    const WORDS: [&str; 9] =
+        ["bad", "na", "n/a", "#n/a", "#nv", "null", "none", "missing", "masked"];
     let unsigned = match word {
         [b'+' | b'-', rest @ ..] => rest,
         _ => word,
@@ -154,19 +177,20 @@ impl Cells {
         Self { signs: [count(b';'), count(b','), count(b'\t')], words: words.count() }
     }
 
-    /// Whether a line above has empty cells and stars only, and as many: then all heights in it are missing.
+    /// Whether a line above has empty cells and stars or hyphens only, and as many: then all heights in it are missing.
     pub(super) fn are_all_missing_in(&self, line: &[u8]) -> bool {
         let above = Self::of(line);
         let is_same = |(above, below): (usize, usize)| above > 0 && above == below;
-        line.iter().all(|byte| *byte == b'*' || PARTS.contains(byte))
-            && (above.signs.into_iter().zip(self.signs).any(is_same)
-                || is_same((above.words, self.words)))
+        let only = |mark: u8| line.iter().all(|byte| *byte == mark || PARTS.contains(byte));
+        let has_cells = above.signs.into_iter().zip(self.signs).any(is_same);
+        // Hyphens between blanks underline names.
+        only(b'*') && (has_cells || is_same((above.words, self.words))) || only(b'-') && has_cells
     }
 }
 
-/// Whether a line has one comma, between two digits.
-fn is_one_comma(line: Line) -> bool {
-    let mut parts = line.bytes.split(|byte| *byte == b',');
+/// Whether a line, or a word, has one comma, between two digits.
+fn is_one_comma(line: &[u8]) -> bool {
+    let mut parts = line.split(|byte| *byte == b',');
     let (Some(before), Some(after), None) = (parts.next(), parts.next(), parts.next()) else {
         return false;
     };
@@ -182,6 +206,24 @@ fn begins_with_zero(cell: &[u8]) -> bool {
 fn is_parted_by_blanks(line: &[u8]) -> bool {
     let line = line.trim_ascii();
     line.contains(&b' ') && !line.contains(&b'\t')
+}
+
+/// Whether some commas end words, and others stand between digits, one in each word at most.
+fn commas_are_of_two_kinds<'a>(rows: impl Iterator<Item = Line<'a>>) -> bool {
+    let (mut ends, mut inside) = (false, false);
+    for line in rows {
+        for word in line.bytes.split(|byte| matches!(byte, b' ' | b'\t')) {
+            let whole = word.strip_suffix(b",").unwrap_or(word);
+            ends |= whole.len() < word.len();
+            if whole.contains(&b',') {
+                if !is_one_comma(whole) {
+                    return false;
+                }
+                inside = true;
+            }
+        }
+    }
+    ends && inside
 }
 
 /// Whether commas are decimal in lines without `;`: if numbers are parted by blanks or tabs, and no comma stands at the

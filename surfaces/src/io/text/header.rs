@@ -31,6 +31,8 @@ pub(super) struct Header {
     pub(super) ends_with_names: bool,
     /// The number that stands for a missing value.
     pub(super) missing: Option<f64>,
+    /// The first number with a comma that may be a decimal one or part thousands.
+    pub(super) doubtful: Option<String>,
     /// The first line that only maps have: one of its sides, say.
     of_map: Option<String>,
     /// The first lines that say nothing that is known, and how many there are.
@@ -44,6 +46,9 @@ const SHOWN_LETTERS: usize = 40;
 
 /// How far a step may be from the cell that a header gives, relative to it: both are rounded.
 const SAME_STEP: f64 = 0.05;
+
+/// How far a number in the file may be from the one that stands for a missing value, relative to it: both are rounded.
+const SAME_MARK: f64 = 1e-6;
 
 /// A number and what is written behind it.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,46 +75,77 @@ const ROWS: &str = "y-pixels|ny|nrows|number of rows";
 
 impl Header {
     /// Takes in a line. Returns whether it says anything that is known.
-    pub(super) fn add(&mut self, line: &str) -> bool {
+    pub(super) fn add(&mut self, line: &str) -> Result<bool, Fault> {
         let line =
             line.trim_matches(|c: char| matches!(c, '#' | '%' | '"' | '\\') || c.is_whitespace());
         if line.is_empty() {
-            return false;
+            return Ok(false);
         }
         self.ends_with_names = false;
-        let words = || line.split_once(char::is_whitespace);
-        let pair = line.split_once(['=', ':', '：']);
-        let key = pair
-            .filter(|(key, value)| self.add_value(key, value.trim()))
-            .or_else(|| words().filter(|(key, value)| self.add_word(key, value.trim())));
-        if let Some((key, _)) = key {
+        if let Some((key, value)) = line.split_once(['=', ':', '：'])
+            && let Some(is_read) = self.add_value(key, value.trim())?
+        {
             if is_of_map(key) {
                 self.of_map.get_or_insert_with(|| line.to_string());
             }
-            return true;
+            if !is_read {
+                self.leave(line);
+            }
+            return Ok(true);
+        }
+        let words = line.split_once(char::is_whitespace);
+        if words.is_some_and(|(key, value)| self.add_word(key, value.trim())) {
+            return Ok(true);
         }
         if words::could_be(line) {
             self.names = Some(line.to_string());
             self.ends_with_names = true;
-            return true;
+            return Ok(true);
         }
+        self.leave(line);
+        Ok(false)
+    }
+
+    /// A line that is not used.
+    fn leave(&mut self, line: &str) {
         if self.unread.len() < SHOWN {
             self.unread.push(line.chars().take(SHOWN_LETTERS).collect());
         }
         self.unread_count += 1;
-        false
     }
 
-    /// A line with a sign between key and value.
-    fn add_value(&mut self, key: &str, value: &str) -> bool {
+    /// A length, and a note of it where its comma may mean two things.
+    fn length(&mut self, text: &str) -> Option<Length> {
+        if may_part_thousands(text) {
+            self.doubtful.get_or_insert_with(|| text.to_string());
+        }
+        Length::parse(text)
+    }
+
+    /// What heights are multiplied by: without it they would be wrong by any factor.
+    fn factor_of(&mut self, key: &str, value: &str) -> Result<Option<f64>, Fault> {
+        let factor = self.length(value).ok_or_else(|| {
+            fault!(
+                "the heights have to be multiplied by '{key}', but '{value}' does not begin with a number; \
+                 write it with a decimal point, and without signs that part thousands"
+            )
+        })?;
+        Ok(Some(factor.value))
+    }
+
+    /// A line with a sign between key and value. Returns whether the value can be read, `None` for an unknown key.
+    fn add_value(&mut self, key: &str, value: &str) -> Result<Option<bool>, Fault> {
         let key = key.trim().to_lowercase();
         let is = |names: &str| is_one(&key, names);
+        let mut is_read = true;
         if is(TITLE) {
             self.title = value.to_string();
         } else if is(WIDTH) {
-            self.width = Length::parse(value);
+            self.width = self.length(value);
+            is_read = self.width.is_some();
         } else if is(HEIGHT) {
-            self.height = Length::parse(value);
+            self.height = self.length(value);
+            is_read = self.height.is_some();
         } else if is(VALUE_UNIT) || is(DATA_UNIT) {
             self.value_unit = some(value);
             if std::mem::take(&mut self.is_bit2nm) {
@@ -119,14 +155,18 @@ impl Header {
             self.side_unit = some(value);
         } else if is(COLUMNS) {
             self.columns = value.parse().ok();
+            is_read = self.columns.is_some();
         } else if is(ROWS) {
             self.rows = value.parse().ok();
+            is_read = self.rows.is_some();
         } else if is("lateral units") {
             self.lateral_unit = some(value);
         } else if is("pixel size") || is("scale x") {
-            self.pixel = Length::parse(value);
+            self.pixel = self.length(value);
+            is_read = self.pixel.is_some();
         } else if is("scale y") {
-            self.pixel_y = Length::parse(value);
+            self.pixel_y = self.length(value);
+            is_read = self.pixel_y.is_some();
         } else if is("z amplitude") {
             // WSxM gives the range of heights; its unit is that of them all.
             self.value_unit = Length::parse(value).and_then(|range| range.unit);
@@ -137,16 +177,16 @@ impl Header {
             // A unit of its own takes precedence, on whichever line it stands.
             if self.value_unit.is_none() {
                 self.is_bit2nm = true;
-                self.factor = number(value);
+                self.factor = self.factor_of(&key, value)?;
                 self.value_unit = some("nm");
             }
         } else if let Some(unit) = key.strip_prefix("height conversion factor (->") {
-            self.factor = number(value);
+            self.factor = self.factor_of(&key, value)?;
             self.value_unit = some(unit.trim_end_matches(')'));
         } else {
-            return false;
+            return Ok(None);
         }
-        true
+        Ok(Some(is_read))
     }
 
     /// The header of a grid of geographers: lines without a sign between key and value.
@@ -154,7 +194,7 @@ impl Header {
         let key = key.to_ascii_lowercase();
         match key.as_str() {
             "nodata_value" => self.missing = number(value),
-            "cellsize" => self.pixel = Length::parse(value),
+            "cellsize" => self.pixel = self.length(value),
             "ncols" => self.columns = value.parse().ok(),
             "nrows" => self.rows = value.parse().ok(),
             _ => return false,
@@ -188,10 +228,10 @@ impl Header {
     /// Makes heights in their unit, NaN where they are missing, of the numbers in the file.
     pub(super) fn apply(&self, numbers: &mut [f64], notes: &mut Vec<String>) {
         if let Some(missing) = self.missing {
-            numbers.iter_mut().filter(|number| **number == missing).for_each(|n| *n = f64::NAN);
-        } else {
-            notes.append(&mut markers::remove(numbers));
+            let is_mark = |number: f64| (number - missing).abs() <= SAME_MARK * missing.abs();
+            numbers.iter_mut().filter(|number| is_mark(**number)).for_each(|n| *n = f64::NAN);
         }
+        notes.append(&mut markers::remove(numbers));
         let factor = self.factor.unwrap_or(1.0);
         numbers.iter_mut().for_each(|number| *number *= factor);
     }
@@ -233,6 +273,33 @@ impl Header {
             && self.rows.is_none_or(|stated| stated == rows)
     }
 
+    /// Makes a cell of its sides one of those steps along x and y with which the sides are those from the first node to
+    /// the last. Returns what is said of it.
+    pub(super) fn fit_to_steps(
+        &self,
+        (dx, dy): &mut (f64, f64),
+        (nx, ny): (usize, usize),
+        [along_x, along_y]: [Option<f64>; 2],
+    ) -> Option<String> {
+        let mut fitted = Vec::new();
+        for (name, cell, n, step) in [("x", dx, nx, along_x), ("y", dy, ny, along_y)] {
+            // A spacing is no side.
+            let Some(step) = step.filter(|_| self.pixel.is_none() && n > 1) else { continue };
+            let edges = *cell * n as f64 / (n - 1) as f64;
+            if is_same_step(step, edges) && (step - edges).abs() < (step - *cell).abs() {
+                *cell = step;
+                fitted.push(name);
+            }
+        }
+        (!fitted.is_empty()).then(|| {
+            format!(
+                "the sides of the header are those from the first position to the last along {}, so that cells are \
+                 the steps of the positions",
+                fitted.join(" and ")
+            )
+        })
+    }
+
     /// Whether `count` numbers in such steps can be positions: any can unless there is a side, with which they have to
     /// agree, be they those of cells or those of nodes from edge to edge.
     pub(super) fn may_be_axis(&self, count: usize, along_x: bool, step: f64) -> bool {
@@ -244,7 +311,7 @@ impl Header {
         };
         let cell = if along_x { dx } else { dy };
         let edges = cell * count as f64 / (count - 1) as f64;
-        [cell, edges].iter().any(|cell| (step.abs() - cell).abs() <= SAME_STEP * cell)
+        [cell, edges].into_iter().any(|cell| is_same_step(step.abs(), cell))
     }
 
     /// The cell of a matrix, and its unit: that of the side along x.
@@ -262,6 +329,10 @@ impl Header {
         let cell = (x.value / nx as f64, y.value * ratio / ny as f64);
         Ok((Some(cell), unit_x.cloned()))
     }
+}
+
+fn is_same_step(step: f64, cell: f64) -> bool {
+    (step - cell).abs() <= SAME_STEP * cell
 }
 
 /// Whether a key, in small letters, is one of these names.
@@ -296,6 +367,19 @@ impl Length {
         let (value, unit) = text.split_at(end);
         Some(Self { value: number(value)?, unit: some(unit) })
     }
+}
+
+/// Whether a text begins with digits, a comma and three digits, as thousands are parted: a decimal comma looks the
+/// same, unless 0 is before it.
+fn may_part_thousands(text: &str) -> bool {
+    let Some((before, after)) = text.split_once(',') else {
+        return false;
+    };
+    let before = before.trim_start_matches(['+', '-']);
+    let digits = after.bytes().take_while(u8::is_ascii_digit).count();
+    let is_group =
+        (1..=3).contains(&before.len()) && before.bytes().all(|byte| byte.is_ascii_digit());
+    is_group && !before.starts_with('0') && digits == 3
 }
 
 /// A number with a decimal point or comma.

@@ -19,13 +19,20 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
         );
     }
     header.check_shape(shape)?;
+    let mut notes = axes.notes;
     let (mut cell, mut lateral_unit) = header.cell(shape)?;
-    if cell.is_none() {
-        (cell, lateral_unit) = (axes.cell, header.side_unit.clone());
+    match &mut cell {
+        Some(cell) => notes.extend(header.fit_to_steps(cell, shape, axes.steps)),
+        None => (cell, lateral_unit) = (axes.cell, header.side_unit.clone()),
+    }
+    if table.has_margins && header.has_sides() {
+        notes.push(
+            "columns without any number at the edges are left out, and cells follow from the sides without them"
+                .to_string(),
+        );
     }
     let told = table.told();
     let mut values = table.values;
-    let mut notes = axes.notes;
     notes.extend(header.lone_side());
     header.apply(&mut values, &mut notes);
     Ok(Channel {

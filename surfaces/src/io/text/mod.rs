@@ -63,17 +63,33 @@ pub(super) fn parse(file: &[u8], path: &Path, layout: Option<TextLayout>) -> Par
     let skipped = if file.starts_with(mark) { mark.len() } else { 0 };
     let text = quotes::removed(file);
     let lines = Lines::new(&text, skipped);
-    if lines.rest().starts_with(wyko::BEGINS) {
-        return wyko::parse(lines);
+    let begins = |with: &[u8]| lines.rest().starts_with(with);
+    ensure!(
+        !begins(zygo::NOT_READ),
+        "it is a 'Zygo ASCII Data File', which is not read: export it as .dat or as a 'Zygo XYZ Data File'"
+    );
+    if begins(wyko::BEGINS) {
+        return laid_out(wyko::parse(lines)?, layout);
     }
-    if lines.rest().starts_with(zygo::BEGINS) {
-        return zygo::parse(lines);
+    if begins(zygo::BEGINS) {
+        return laid_out(zygo::parse(lines)?, layout);
     }
     let (header, table) = table::read(lines)?;
     let is_xyz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xyz"));
     let channel = generic(&header, table, is_xyz, layout)?;
     let understood = channel.understood + &header.unread();
     Ok(vec![Channel { name: header.title, understood, ..channel }])
+}
+
+/// The maps of a text of known layout, with what is said of another one.
+fn laid_out(mut channels: Vec<Channel>, layout: Option<TextLayout>) -> Parsed {
+    if let Some(layout) = layout {
+        let note = format!(
+            "the layout '{layout}' is not used: this kind of text says itself how it is laid out"
+        );
+        channels.iter_mut().for_each(|channel| channel.notes.push(note.clone()));
+    }
+    Ok(channels)
 }
 
 /// The map in a table: as the user says, as the names of its columns do, or as its numbers do.
@@ -99,20 +115,20 @@ fn generic(
         }
         ensure!(
             !header.ends_with_names || names::of_profile(header, &table).is_some(),
-            "the line '{}' above the numbers names columns, but not the {} that there are",
+            "the line '{}' above the numbers names columns, but not one of the {} that there are as x, one as y and one \
+             as the height",
             names.unwrap_or_default(),
             table.columns
         );
     }
+    // Of commas a layout says nothing.
     ensure!(
-        layout.is_some() || !table.dialect.has_one_comma || table.columns != 2,
+        !table.dialect.has_one_comma || table.columns != 2,
         "each line has one comma: two numbers, or one with a decimal comma; part columns by ';', or write decimal points"
     );
-    ensure!(
-        layout.is_some() || !table.dialect.has_leading_zeros,
-        "numbers parted by commas begin with zeros, as what follows a decimal comma does; part columns by ';', or write \
-         decimal points"
-    );
+    if let Some(doubt) = table.dialect.doubt {
+        bail!("{doubt}; part columns by ';', or write decimal points");
+    }
     let is_list = is_xyz || header.lateral_unit.is_some();
     let is_asked = layout.is_some();
     let found = match layout {

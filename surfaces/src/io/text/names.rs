@@ -47,15 +47,7 @@ impl Columns {
     }
 
     fn of(names: &[String]) -> Result<Option<Self>, Fault> {
-        let kinds: Vec<Option<Kind>> = names
-            .iter()
-            .map(|name| {
-                let mut found = words(name).filter_map(kind);
-                let first = found.next()?;
-                // `x (value)` is x.
-                found.all(|kind| kind == first || kind == Kind::Z).then_some(first)
-            })
-            .collect();
+        let kinds: Vec<Option<Kind>> = names.iter().map(|name| kind_of(name)).collect();
         let only = |wanted| {
             let mut places = (0..kinds.len()).filter(|k| kinds.get(*k) == Some(&Some(wanted)));
             places.next().filter(|_| places.next().is_none())
@@ -81,17 +73,40 @@ impl Columns {
     }
 }
 
-/// The units of a position and a height, as a line of two names says; `None` if there is none.
-pub(super) fn of_profile(header: &Header, table: &Table) -> Option<[Option<String>; 2]> {
+/// What a name says as a whole: `x (value)` is x.
+fn kind_of(name: &str) -> Option<Kind> {
+    let mut found = words(name).filter_map(kind);
+    let first = found.next()?;
+    found.all(|kind| kind == first || kind == Kind::Z).then_some(first)
+}
+
+/// What names say of the columns of a profile.
+#[derive(Debug, Default)]
+pub(super) struct OfProfile {
+    /// Units of the positions and of the heights.
+    pub(super) units: [Option<String>; 2],
+    /// Whether the heights stand before the positions.
+    pub(super) is_turned: bool,
+}
+
+/// What a line of one or two names says; `None` if there is none.
+pub(super) fn of_profile(header: &Header, table: &Table) -> Option<OfProfile> {
     let line =
         header.names.as_ref()?.trim().trim_start_matches(['#', '%']).trim_matches([' ', '"']);
     let ways = ways(line, table);
     let names = ways.into_iter().find(|names| names.len() == table.columns)?;
-    match &names[..] {
-        [height] => Some([None, unit(height)]),
-        [position, height] => Some([unit(position), unit(height)]),
-        _ => None,
-    }
+    let (units, is_turned) = match &names[..] {
+        [height] => ([None, unit(height)], false),
+        [height, position]
+            if kind_of(height) == Some(Kind::Z)
+                && matches!(kind_of(position), Some(Kind::X | Kind::Y)) =>
+        {
+            ([unit(position), unit(height)], true)
+        }
+        [position, height] => ([unit(position), unit(height)], false),
+        _ => return None,
+    };
+    Some(OfProfile { units, is_turned })
 }
 
 /// The names in a line, in all ways in which they could be parted.

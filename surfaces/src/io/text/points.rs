@@ -45,6 +45,11 @@ impl Map {
         Ok(self.channel)
     }
 
+    /// How many nodes it has along x and y.
+    pub(super) fn shape(&self) -> (usize, usize) {
+        self.channel.shape
+    }
+
     /// Whether its coordinates are those of most of a grid, or of many nodes of one: no other numbers are.
     pub(super) fn is_for_sure(&self) -> bool {
         let (nx, ny) = self.channel.shape;

@@ -1,7 +1,7 @@
 //! A text with a profile: a height in every row, or a position and a height.
 
 use super::header::Header;
-use super::names;
+use super::names::{self, OfProfile};
 use super::table::Table;
 use crate::io::bytes::shape;
 use crate::io::fault::Fault;
@@ -13,15 +13,17 @@ use crate::number::counted;
 pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
     let count = table.rows();
     let shape = shape(count as u64, 1)?;
-    let [of_x, of_z] = names::of_profile(header, &table).unwrap_or_default();
+    let named = names::of_profile(header, &table).unwrap_or_default();
+    let OfProfile { units: [of_x, of_z], is_turned } = named;
     let told = table.told();
     let mut notes = Vec::new();
     let (mut values, positions) = match table.columns {
         2 => {
             let pairs = table.values.chunks_exact(2);
             let place = |pair: &[f64], k: usize| pair.get(k).copied().unwrap_or(f64::NAN);
-            let positions: Vec<f64> = pairs.clone().map(|pair| place(pair, 0)).collect();
-            (pairs.map(|pair| place(pair, 1)).collect(), Some(positions))
+            let [of_position, of_height] = if is_turned { [1, 0] } else { [0, 1] };
+            let positions: Vec<f64> = pairs.clone().map(|pair| place(pair, of_position)).collect();
+            (pairs.map(|pair| place(pair, of_height)).collect(), Some(positions))
         }
         _ => (table.values, None),
     };
@@ -36,7 +38,11 @@ pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
         (values, step) = on_even_steps(positions, values, &mut notes)?;
         cell = Some((step, step));
     }
-    let of_what = if cell.is_some() { "a position and a height" } else { "a height" };
+    let of_what = match (cell, is_turned) {
+        (None, _) => "a height",
+        (Some(_), false) => "a position and a height",
+        (Some(_), true) => "a height and a position",
+    };
     Ok(Channel {
         height_unit: of_z.or_else(|| header.value_unit.clone()),
         lateral_unit: of_x

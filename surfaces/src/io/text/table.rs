@@ -2,6 +2,7 @@
 
 use crate::io::fault::Fault;
 
+use super::axes;
 use super::dialect::{Cells, Dialect, is_row};
 use super::header::Header;
 use crate::io::lines::{Line, Lines};
@@ -61,6 +62,35 @@ impl Table {
         (1..).zip(numbers).all(|(k, number)| *number == start + f64::from(k))
     }
 
+    /// Refuses a line right above the rows that is one of them but for a word.
+    ///
+    /// A word before evenly spaced numbers is the corner of a row of positions.
+    fn check_above(&self, line: &Line) -> Result<(), Fault> {
+        let cells: Vec<&[u8]> = match self.dialect.separator {
+            Some(sign) => line.bytes.split(|byte| *byte == sign).map(<[u8]>::trim_ascii).collect(),
+            None => {
+                line.bytes.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect()
+            }
+        };
+        let numbers: Vec<f64> = cells.iter().filter_map(|cell| self.dialect.number(cell)).collect();
+        let is_word = |cell: &[u8]| !cell.is_empty() && self.dialect.number(cell).is_none();
+        let Some(place) = cells.iter().position(|cell| is_word(cell)) else {
+            return Ok(());
+        };
+        let is_corner =
+            place == 0 && numbers.len() + 1 == cells.len() && axes::are_positions(&numbers);
+        let is_row = cells.len() == self.columns && 2 * numbers.len() > cells.len();
+        ensure!(
+            is_corner || !is_row,
+            at(line.offset),
+            "{}, but {} of its {} cells are, as in the lines below",
+            no_number(line, cells[place]),
+            numbers.len(),
+            cells.len()
+        );
+        Ok(())
+    }
+
     fn read(lines: Lines, most: Option<usize>, stated: Option<usize>) -> Result<Self, Fault> {
         let dialect = Dialect::of(&lines);
         let mut table = Self {
@@ -81,7 +111,7 @@ impl Table {
             }
             if line.is_comment() {
                 ensure!(
-                    !Header::default().add(&line.text()),
+                    !Header::default().add(&line.text())?,
                     at(line.offset),
                     "line {} begins another map: a text has to hold one only",
                     line.number
@@ -100,11 +130,12 @@ impl Table {
             let before = table.values.len();
             let (leading, ends) = row(&line, dialect, &mut table.values)?;
             let mut columns = table.values.len() - before;
-            // Blanks before a line, be they tabs, are no cells if other lines do without.
-            if table.columns > 0 && columns > table.columns && columns - leading <= table.columns {
+            // Blanks before a line, be they tabs, are no cells if other lines do without; any other sign makes cells.
+            let may_be_blanks = dialect.separator == Some(b'\t') && table.columns > 0;
+            if may_be_blanks && columns > table.columns && columns - leading <= table.columns {
                 table.values.drain(before..before + columns - table.columns);
                 columns = table.columns;
-            } else if before == table.columns && columns < before && table.columns > 0 {
+            } else if may_be_blanks && before == table.columns && columns < before {
                 let excess = before - columns;
                 if leading_of_first >= excess {
                     table.values.drain(..excess);
@@ -143,7 +174,9 @@ impl Table {
 pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
     let mut header = Header::default();
     // Lines right above the numbers that may belong to them.
-    let mut above: Vec<Lines> = Vec::new();
+    let mut above: Vec<(Lines, Line)> = Vec::new();
+    // The line before, unless it says anything that is known.
+    let mut unknown: Option<Line> = None;
     loop {
         let ahead = lines.clone();
         let line = lines
@@ -151,22 +184,36 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
             .ok_or_else(|| fault!("there is no line in it that consists of numbers only"))?;
         if !line.is_comment() && is_row(line.bytes) {
             let cells = Cells::of(line.bytes);
-            let belongs = |above: &&Lines| {
-                let mut above = (*above).clone();
-                above.next().is_some_and(|above| cells.are_all_missing_in(above.bytes))
-            };
+            let belongs = |(_, above): &&(Lines, Line)| cells.are_all_missing_in(above.bytes);
             let count = above.iter().rev().take_while(belongs).count();
-            let first = above.get(above.len() - count).unwrap_or(&ahead).clone();
+            let rows = above.split_off(above.len() - count);
+            for (_, line) in above {
+                header.add(&line.text())?;
+            }
+            let first = rows.into_iter().next().map_or(ahead, |(lines, _)| lines);
             let table = Table::read(first, None, header.stated_columns())?;
+            if let Some(line) = unknown {
+                table.check_above(&line)?;
+            }
+            if let Some(number) = header.doubtful.as_ref().filter(|_| table.dialect.has_points) {
+                bail!(
+                    "the header has '{number}', whose comma parts thousands or is a decimal one, while the numbers \
+                     below have decimal points: write it with a point, or without the comma"
+                );
+            }
             return Ok((header, table));
         }
         let is_empty = |byte: &u8| !byte.is_ascii_alphanumeric();
         if line.bytes.iter().all(is_empty) && above.len() < MOST_ABOVE {
-            above.push(ahead);
-        } else {
-            above.clear();
+            above.push((ahead, line));
+            unknown = None;
+            continue;
         }
-        header.add(&line.text());
+        for (_, line) in above.drain(..) {
+            header.add(&line.text())?;
+        }
+        let is_known = header.add(&line.text())?;
+        unknown = Some(line).filter(|line| !is_known && !line.is_comment());
     }
 }
 
@@ -183,7 +230,16 @@ fn row(line: &Line, dialect: Dialect, values: &mut Vec<f64>) -> Result<(usize, b
     };
     let (mut leading, mut only_empty, mut ends_empty) = (0, true, false);
     for text in line.bytes.split(|byte| *byte == separator) {
+        let before = values.len();
         ends_empty = !cell(line, text, dialect, values)?;
+        ensure!(
+            values.len() <= before + 1,
+            at(line.offset),
+            "line {} has {} in one cell, '{}': part all numbers by one sign, and write none with a blank in it",
+            line.number,
+            counted(values.len() - before, "number"),
+            String::from_utf8_lossy(text.trim_ascii())
+        );
         only_empty &= ends_empty;
         leading += usize::from(only_empty);
         if ends_empty {
@@ -206,13 +262,17 @@ fn cell(line: &Line, text: &[u8], dialect: Dialect, values: &mut Vec<f64>) -> Re
             "line {} has a decimal point, but numbers in other lines have a decimal comma",
             line.number
         );
-        values.push(dialect.number(word).ok_or_else(|| {
-            let shown = String::from_utf8_lossy(word.get(..40).unwrap_or(word));
-            fault!(at(line.offset), "'{shown}' in line {} is no number", line.number)
-        })?);
+        let number = dialect.number(word);
+        values.push(number.ok_or_else(|| fault!(at(line.offset), "{}", no_number(line, word)))?);
         any = true;
     }
     Ok(any)
+}
+
+/// What is said of a word that is no number.
+fn no_number(line: &Line, word: &[u8]) -> String {
+    let shown = String::from_utf8_lossy(word.get(..40).unwrap_or(word));
+    format!("'{shown}' in line {} is no number", line.number)
 }
 
 /// Whether a line has nothing on it. A row of empty cells between tabs has: as many tabs as the others.

@@ -44,7 +44,7 @@ pub(super) fn parse(mut lines: Lines) -> Parsed {
         parsed(name, value, None)
     };
     let number = |name: &str| {
-        let number = value(name).map(|value| positive(name, parsed(name, value, None)?, 0));
+        let number = value(name).map(|value| positive(name, parsed(name, value, None)?, None));
         number.transpose()
     };
     let (nx, ny) = shape(count("X Size")?, count("Y Size")?)?;

@@ -14,6 +14,9 @@ use crate::io::raw::{Channel, Parsed};
 
 pub(super) const BEGINS: &[u8] = b"Zygo XYZ Data File";
 
+/// The other text that MetroPro exports.
+pub(super) const NOT_READ: &[u8] = b"Zygo ASCII Data File";
+
 /// What stands for a missing height.
 const MISSING: &str = "No Data";
 

@@ -36,7 +36,9 @@ impl<'a> Archive<'a> {
             .filter_map(|name| name.strip_suffix(DESCRIPTION).map(str::to_string))
             .filter(|folder| folder.is_empty() || folder.ends_with('/'))
             .min_by_key(|folder| folder.matches('/').count())
-            .ok_or_else(|| fault!("the archive has no member '{DESCRIPTION}'"))?;
+            .ok_or_else(|| {
+                fault!("it is a zip archive without a member '{DESCRIPTION}', so no X3P")
+            })?;
         Ok(Self { zip, folder, length: file.len() })
     }
 

@@ -5,7 +5,8 @@
 //! heights are integers, marked in `bindata/valid.bin`, one bit for each point, the least significant first.
 //!
 //! A profile, of feature type PRF, is one line; its points may have positions of their own, which stand before the
-//! height of each. In the order of openGPS, x, y and z, an axis of even steps takes no number.
+//! height of each. In the order of openGPS, x, y and z, an axis of even steps takes no number. A line that is not along
+//! x is as long as from point to point.
 //!
 //! The description and the data have to agree to the byte: a matrix whose sizes were wrong by one would be a sheared
 //! surface. Checksums that do not match are common in files that circulate, and only noted.
@@ -41,11 +42,12 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let checksum = archive.checksum(link);
     compare(archive::DESCRIPTION, &description, checksum.as_deref(), &mut notes);
     drop(description);
-    let (heights, positions) = match &record.points {
+    let (heights, x, y) = match &record.points {
         Points::Listed(points) => {
-            let heights = points.iter().map(|[_, z]| record.z.metres(*z)).collect();
-            let along = |x: Stored| points.iter().map(|[place, _]| x.metres(*place)).collect();
-            (heights, record.x.map(along))
+            let along = |axis: Stored, k: usize| -> Vec<f64> {
+                points.iter().map(|point| axis.metres(point[k])).collect()
+            };
+            (along(record.z, 2), record.x.map(|x| along(x, 0)), record.y.map(|y| along(y, 1)))
         }
         Points::Linked(data, valid) => {
             let (nx, ny) = record.shape;
@@ -58,17 +60,25 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
                 axis.number.decode_all(&bytes, |number| axis.metres(number))
             };
             let mut heights = column(record.z, before + between)?;
-            let positions = record.x.map(|x| column(x, 0)).transpose()?;
+            let x = record.x.map(|x| column(x, 0)).transpose()?;
+            let y = record.y.map(|y| column(y, before)).transpose()?;
             if let Some(valid) = valid {
                 let bits = linked(&mut archive, valid, heights.len().div_ceil(8), &mut notes)?;
                 drop_invalid(&bits, &mut heights);
             }
-            (heights, positions)
+            (heights, x, y)
         }
     };
     if record.rotated {
         notes.push("the axes of the file are rotated, which is not applied".to_string());
     }
+    let positions = match y.filter(|y| profile::varies(y)) {
+        None => x,
+        Some(y) => {
+            let even = || (0..y.len()).map(|k| k as f64 * record.cell.0).collect::<Vec<f64>>();
+            Some(profile::along(&x.unwrap_or_else(even), &y))
+        }
+    };
     let map = match positions {
         Some(positions) => {
             let (heights, step) = profile::on_even_steps(positions, heights, &mut notes)?;

@@ -22,7 +22,7 @@ pub(super) struct Record {
     /// Spacing along x and y \[m\].
     pub(super) cell: (f64, f64),
     pub(super) z: Stored,
-    /// Positions of a profile whose points have their own, and those along y, which are not read.
+    /// Positions along x and y of a profile whose points have their own.
     pub(super) x: Option<Stored>,
     pub(super) y: Option<Stored>,
     pub(super) is_profile: bool,
@@ -65,8 +65,8 @@ impl Stored {
 pub(super) enum Points {
     /// In a member of their own, and which of them are valid in another.
     Linked(Link, Option<Link>),
-    /// In the description: of each point the first number and the last, which is its height.
-    Listed(Vec<[f64; 2]>),
+    /// In the description: x, y and height of each point, NaN where there is none.
+    Listed(Vec<[f64; 3]>),
 }
 
 /// A member, and its checksum.
@@ -147,7 +147,7 @@ impl Record {
             x,
             y,
             is_profile,
-            points: points(third, shape)?,
+            points: points(third, shape, x.is_some() || y.is_some())?,
             checksum: descend(root, &["Record4", "ChecksumFile"]).map_or("", text).to_string(),
             rotated: child(axes, "Rotation").is_some_and(turns),
         })
@@ -248,9 +248,10 @@ fn turns(rotation: Node) -> bool {
     })
 }
 
-fn points(third: Node, shape: (usize, usize)) -> Result<Points, Fault> {
+fn points(third: Node, shape: (usize, usize), has_places: bool) -> Result<Points, Fault> {
     let Some(link) = child(third, "DataLink") else {
-        return listed(descend(third, &["DataList"])?, shape).map(Points::Listed);
+        let list = descend(third, &["DataList"])?;
+        return listed(list, shape, has_places).map(Points::Listed);
     };
     let member = |path, md5| {
         child(link, path).map(text).filter(|path| !path.is_empty()).map(|path| Link {
@@ -264,20 +265,24 @@ fn points(third: Node, shape: (usize, usize)) -> Result<Points, Fault> {
     Ok(Points::Linked(data, valid))
 }
 
-/// Points written out in the description: the first and the last number of each, missing where there is none.
-fn listed(list: Node, (nx, ny): (usize, usize)) -> Result<Vec<[f64; 2]>, Fault> {
+/// Points written out in the description: the first number of each, the last but one, and the last, its height.
+fn listed(list: Node, (nx, ny): (usize, usize), has_places: bool) -> Result<Vec<[f64; 3]>, Fault> {
     // Whatever their namespace: files differ in which they use.
     let data = list.children().filter(|child| child.tag_name().name() == "Datum");
     let points = data.map(|datum| {
-        let number = |number: Option<&str>| match number.unwrap_or_default().trim() {
+        let number = |number: Option<&&str>| match number.map_or("", |number| number.trim()) {
             "" => Ok(f64::NAN),
             number => parsed("a Datum", number, place(datum)),
         };
-        let mut numbers = text(datum).split(';');
-        let last = text(datum).rsplit(';').next();
-        Ok::<_, Fault>([number(numbers.next())?, number(last)?])
+        let mut numbers: Vec<&str> = text(datum).split(';').collect();
+        // Some writers end a point with the sign that parts its numbers; behind a place it is a missing height.
+        let ends = numbers.len() == 4 || numbers.len() == 2 && !has_places;
+        numbers.pop_if(|last| ends && last.is_empty());
+        let mut from_last = numbers.iter().rev();
+        let (z, y) = (number(from_last.next())?, number(from_last.next())?);
+        Ok::<_, Fault>([number(numbers.first())?, y, z])
     });
-    let values: Vec<[f64; 2]> = points.collect::<Result<_, _>>()?;
+    let values: Vec<[f64; 3]> = points.collect::<Result<_, _>>()?;
     let found = values.len();
     ensure!(
         found == nx * ny,

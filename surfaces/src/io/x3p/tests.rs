@@ -117,6 +117,14 @@ fn heights_may_stand_in_the_description() -> TestResult {
     assert_eq!(all.values, [1.5e-6, -2.0]);
     let missing = only(with(link, &list("<Datum/><Datum>3</Datum>"))?)?;
     assert!(missing.values[0].is_nan() && missing.values[1] == 3.0);
+    // A sign behind the last number parts it from nothing.
+    for ends in
+        ["<Datum>1e-6;</Datum><Datum>;;-2;</Datum>", "<Datum>1e-6</Datum><Datum>-2 ; </Datum>"]
+    {
+        assert_eq!(only(with(link, &list(ends))?)?.values, [1e-6, -2.0], "{ends}");
+    }
+    let missing = only(with(link, &list("<Datum>1;2;</Datum><Datum>3</Datum>"))?)?;
+    assert!(missing.values[0].is_nan() && missing.values[1] == 3.0);
     for wrong in ["<Datum>1</Datum>", "<Datum>1</Datum><Datum>x</Datum>"] {
         assert!(matches!(with(link, &list(wrong))?, Err(Fault::Malformed { .. })));
     }
@@ -151,6 +159,53 @@ fn profiles_have_positions_of_their_own() -> TestResult {
     let wide = narrow.replace("<SizeY>1", "<SizeY>2");
     let members: [(&str, &[u8]); 2] = [("main.xml", wide.as_bytes()), ("data.bin", &DATA)];
     assert_refused(parse(&archive(&members)?), "SizeY is 2, but a profile has one line");
+    Ok(())
+}
+
+/// A line across both axes is as long as from point to point, whether its places are even steps or numbers.
+#[test]
+fn profiles_may_run_across_both_axes() -> TestResult {
+    let absolute = |description: &str, axis: &str| {
+        let [old, new] = ["", "<DataType>F</DataType>"].map(|kind| format!("<{axis}>{kind}"));
+        let text = description.replace(&old, &new);
+        let (before, after) = text.split_once(&new)?;
+        Some(format!("{before}{new}{}", after.replacen("<AxisType>I", "<AxisType>A", 1)))
+    };
+    let profile = |axes: &[&str], points: &str| -> Result<Parsed, Box<dyn std::error::Error>> {
+        let count = points.split(' ').count();
+        let list: String =
+            points.split(' ').map(|point| format!("<Datum>{point}</Datum>")).collect();
+        let mut text = DESCRIPTION
+            .replace("SUR", "PRF")
+            .replace("<Increment>2e-6", "<Increment>3e-6")
+            .replace(
+                "<CY><AxisType>I</AxisType><Increment>3e-6",
+                "<CY><AxisType>I</AxisType><Increment>1e-6",
+            )
+            .replace("<SizeX>2", &format!("<SizeX>{count}"))
+            .replace("<PointDataLink>data.bin</PointDataLink>", "")
+            .replace("<DataLink></DataLink>", &format!("<DataList>{list}</DataList>"));
+        for axis in axes {
+            text = absolute(&text, axis).ok_or("no axis")?;
+        }
+        Ok(parse(&archive(&[("main.xml", text.as_bytes())])?))
+    };
+    // Units of 3 µm along x and of 1 µm along y.
+    for (axes, points, step) in [
+        (&["CX", "CY"][..], "0;0;1 1;4;2 2;8;4", 5e-6),
+        (&["CX", "CY"], "7;0;1 7;4;2 7;8;4", 4e-6),
+        (&["CX", "CY"], "2;5;1 1;9;2 0;13;4", 5e-6),
+        (&["CY"], ";0;1 ;4;2 ;8;4", 5e-6),
+        (&["CX", "CY"], "0;3;1 2;3;2 4;3;4", 6e-6),
+        (&["CX", "CY"], "0;;1 2;;2 4;;4", 6e-6),
+    ] {
+        let found = only(profile(axes, points)?)?;
+        assert_eq!((found.values, found.notes.len()), (vec![1.0, 2.0, 4.0], 0), "{points}");
+        let (dx, dy) = found.cell.ok_or("no cell")?;
+        assert!((dx / step - 1.0).abs() < 1e-14 && dx == dy, "{points}: {dx}");
+    }
+    let back = profile(&["CX", "CY"], "0;0;1 2;8;2 1;4;3 3;12;4")?;
+    assert_refused(back, "rise or fall from row to row, but row 3");
     Ok(())
 }
 
@@ -217,7 +272,8 @@ fn what_is_no_surface_of_one_layer_is_refused() -> TestResult {
     let sized = |by| with("<SizeX>2", by);
     assert!(matches!(sized("<SizeX>0")?, Err(Fault::Refused(Error::EmptyGrid { .. }))));
     assert!(matches!(sized("<SizeX>99999")?, Err(Fault::Refused(Error::GridTooLarge { .. }))));
-    assert!(parse(&archive(&[("other.xml", b"<a/>")])?).is_err());
+    let other = parse(&archive(&[("other.xml", b"<a/>")])?);
+    assert_refused(other, "it is a zip archive without a member 'main.xml', so no X3P");
     Ok(())
 }
 

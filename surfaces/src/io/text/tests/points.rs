@@ -46,10 +46,70 @@ fn names_of_columns_tell_a_list_and_its_units() -> TestResult {
         let of_image = parsed(format!("{names}\n0 0 7\n0 1 8\n0 2 4\n1 0 9\n1 1 6\n1 2 5\n"))?;
         assert_eq!((of_image.shape, of_image.values[1]), ((3, 2), 8.0), "{names}");
     }
-    // Sides belong to a matrix, of however few columns.
+    // Sides belong to a matrix, of however few columns, unless they are those of a grid.
     let sides = "# Width: 3 m\n# Height: 4 m\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
-    assert_eq!(parsed(sides)?.shape, (3, 4));
+    assert_refused(sides, "'matrix', 4 rows of 3 heights; 'points', 4 points");
+    assert_eq!(parsed(sides.replace("1 1 1", "0 1 2"))?.shape, (3, 4));
     Ok(())
+}
+
+/// All nodes of a grid of 30 x 20, in so many columns.
+fn grid(columns: usize) -> String {
+    let more = |k: usize| (3..columns).map(move |c| format!(" {}", (k * k + c) % 13));
+    let row =
+        |k: usize| format!("{} {} {}{}\n", k % 30, k / 30, k * k % 17, more(k).collect::<String>());
+    (0..600).map(row).collect()
+}
+
+/// Sides or numbers of nodes above a list make no matrix of it.
+#[test]
+fn a_list_under_lines_of_a_matrix_stays_one() -> TestResult {
+    let lines =
+        ["# Pixel size: 1 µm", "cellsize 1", "# Scale X: 1 µm", "# Width: 30\n# Height: 20"];
+    for line in lines {
+        let text = format!("{line}\n# Value units: µm\n{}", grid(3));
+        assert_eq!(parsed_as("l.xyz", &text)?.shape, (30, 20), "{line}");
+        assert_eq!(parsed(format!("# Lateral units: µm\n{text}"))?.shape, (30, 20), "{line}");
+        assert_refused(&text, "'matrix', 600 rows of 3 heights; 'points', 600 points");
+    }
+    // Counts say which of the two it is.
+    assert_eq!(parsed(format!("# nx: 30\n# ny: 20\n{}", grid(3)))?.shape, (30, 20));
+    assert_eq!(parsed(format!("# nx: 3\n# ny: 600\n{}", grid(3)))?.shape, (3, 600));
+    assert_refused(format!("# nx: 7\n{}", grid(3)), "'points', 600 points");
+    Ok(())
+}
+
+/// Many columns, or a defect, make no matrix of a list: rows would be far longer.
+#[test]
+fn long_tables_of_few_columns_are_lists() -> TestResult {
+    for columns in [4, 5, 9, 10, 12] {
+        assert_eq!(parsed(grid(columns))?.shape, (30, 20), "{columns}");
+    }
+    let twice = |columns: usize| {
+        let text = grid(columns);
+        let first = text.lines().next().unwrap_or_default();
+        format!("{text}{first}\n")
+    };
+    for columns in [3, 4, 9] {
+        let said = format!("601 rows of {columns} numbers are taken for points x, y, z unless");
+        assert_refused(twice(columns), &said);
+        assert_refused(twice(columns), "'# Width: 1 mm'");
+        let declared = format!("# Width: 1 mm\n# Height: 9 mm\n{}", twice(columns));
+        assert_eq!(parsed(declared)?.shape, (columns, 601));
+    }
+    // A narrow map is one.
+    let narrow: String =
+        (0..40).map(|k| format!("{} {} {} {}\n", k % 7, k * k % 11, 3, 1)).collect();
+    assert_eq!(parsed(narrow)?.shape, (4, 40));
+    Ok(())
+}
+
+/// The message says what lacks, not how many names there are.
+#[test]
+fn names_without_one_x_and_one_y_are_refused() {
+    let rows = "0;0;7;1\n0;1;8;1\n1;0;9;1\n1;1;6;1\n";
+    let said = "not one of the 4 that there are as x, one as y and one as the height";
+    assert_refused(format!("X;Y;Z;X_err\n{rows}"), said);
 }
 
 #[test]

@@ -26,6 +26,20 @@ fn columns_are_profiles() -> TestResult {
     Ok(())
 }
 
+/// Names say which of two columns has the positions.
+#[test]
+fn heights_may_stand_before_positions() -> TestResult {
+    let rows = "5;0\n6;0.5\n7;1\n9;1.5\n";
+    for names in ["# z [µm]; x [mm]", "height [µm];x [mm]"] {
+        let channel = parsed(format!("{names}\n{rows}"))?;
+        assert_eq!((channel.shape, channel.cell), ((4, 1), Some((0.5, 0.5))), "{names}");
+        assert_eq!(channel.values, [5.0, 6.0, 7.0, 9.0], "{names}");
+        let units = [channel.height_unit.as_deref(), channel.lateral_unit.as_deref()];
+        assert_eq!(units, [Some("µm"), Some("mm")], "{names}");
+    }
+    Ok(())
+}
+
 /// A unit of heights overrules `Bit2nm`, on whichever line it stands; without one it counts.
 #[test]
 fn units_overrule_bit2nm() -> TestResult {
@@ -85,6 +99,15 @@ fn columns_below_a_line_of_maps_are_no_profile_unless_they_say_so() -> TestResul
         assert!(notes.contains("is a line of maps, but names say"), "{line}: {notes}");
     }
     Ok(())
+}
+
+/// A refusal of columns that lines call a map says what they are without these.
+#[test]
+fn a_profile_below_a_pixel_size_is_named() {
+    for rows in ["1\n2\n3\n4\n5\n", "0 5\n0.5 6\n1 7\n1.5 9\n"] {
+        let text = format!("# Pixel size: 0.5 µm\n{rows}");
+        assert_refused(text, "without the lines that say that it is a map, it is a profile");
+    }
 }
 
 /// A side that stands alone gives no cell, and that is said.

@@ -1,0 +1,142 @@
+//! Cells that hold no number, and what parts them.
+
+use super::{MISSING, TestResult, assert_refused, matrix, numbers, parsed, parsed_with};
+use crate::io::TextLayout;
+
+/// Twelve rows of ten heights, of which `cell` is written in other words.
+fn table(separator: &str, cell: impl Fn(usize, usize) -> Option<String>) -> String {
+    let number =
+        |x: usize, y: usize| format!("{}.{}", (x * x + 7 * y) % 10, (x * y * y + 3 * x) % 89 + 10);
+    let row = |y: usize| (0..10).map(move |x| (x, y));
+    let rows = (0..12).map(|y| {
+        let cells: Vec<String> =
+            row(y).map(|(x, y)| cell(x, y).unwrap_or_else(|| number(x, y))).collect();
+        cells.join(separator) + "\n"
+    });
+    rows.collect()
+}
+
+fn with(word: &str, at: (usize, usize)) -> String {
+    table(";", |x, y| (at == (x, y)).then(|| word.to_string()))
+}
+
+/// Sides, so that nothing else is in doubt.
+const SIDES: &str = "# Width: 10 µm\n# Height: 12 µm\n";
+
+/// What a spreadsheet writes in place of a number begins with the sign of remarks.
+#[test]
+fn errors_of_spreadsheets_are_no_remarks() -> TestResult {
+    for word in ["#DIV/0!", "#VALUE!", "#NUM!", "#WERT!", "#NAME?", "########"] {
+        for at in [(0, 5), (3, 5), (0, 0), (3, 0)] {
+            let said = format!("'{word}' in line {} is no number", at.1 + 3);
+            assert_refused(format!("{SIDES}{}", with(word, at)), &said);
+        }
+    }
+    for word in ["#N/A", "#NV"] {
+        for at in [(0, 5), (3, 5), (0, 0), (3, 0)] {
+            let channel = parsed(format!("{SIDES}{}", with(word, at)))?;
+            assert_eq!(channel.shape, (10, 12), "{word}");
+            let missing = channel.values.iter().position(|z| z.is_nan());
+            assert_eq!(missing, Some(10 * at.1 + at.0), "{word}");
+        }
+    }
+    // Remarks, a row that was taken out, and an ornament.
+    for remark in ["# second half", "#1;2;3;4", "########", "### part 2", "% 5 6 7 8"] {
+        let text = format!("1;2;3;4\n{remark}\n5;6;7;8\n");
+        assert_eq!(matrix(text)?.shape, (4, 2), "{remark}");
+    }
+    Ok(())
+}
+
+/// A row with a word in it is none of the header.
+#[test]
+fn words_in_the_first_rows_are_refused_as_in_others() -> TestResult {
+    for separator in [";", "\t", " ", ", "] {
+        let text = table(separator, |x, y| (x == 4 && y < 5).then(|| "Saturated".to_string()));
+        assert_refused(text, "'Saturated' in line 5 is no number, but 9 of its 10 cells are");
+    }
+    let minus = parsed(format!("{SIDES}{}", with("\u{2212}3.1", (0, 0))))?;
+    assert_eq!((minus.shape, minus.values[0]), ((10, 12), -3.1));
+    // The corner of positions, names, and what has as many words, but few numbers.
+    for header in ["y/x;0;1;2;3", "a;b;c;d;e", "map 1 of 2 by", "1;b;c;d;2"] {
+        let text = format!("{header}\n3;1;4;1;5\n9;2;6;5;3\n5;8;9;7;9\n2;3;8;4;6\n");
+        assert_eq!(matrix(text)?.shape, (5, 4), "{header}");
+    }
+    Ok(())
+}
+
+#[test]
+fn thousands_parted_by_blanks_are_no_numbers() -> TestResult {
+    for separator in [";", "\t"] {
+        let text = table(separator, |x, y| Some(format!("{} {},5", x + 1, 200 + (y * x * 7) % 91)));
+        assert_refused(text, "line 1 has 2 numbers in one cell, '1 200,5'");
+    }
+    let list = parsed_with(Some(TextLayout::Points), "a.xyz", "0;0;1 234,5\n1;0;2\n0;1;3\n1;1;4\n");
+    assert!(list.is_err_and(|error| error.to_string().contains("in one cell, '1 234,5'")));
+    Ok(())
+}
+
+/// A layout does not say what a comma is.
+#[test]
+fn decimal_commas_are_doubtful_in_every_layout() -> TestResult {
+    let one = "1,5\n2,5\n3,7\n1,2\n0,3\n";
+    let zeros = "1,05,2,07\n2,5,3,08\n1,25,4,01\n";
+    let blanks = table(", ", |x, y| Some(format!("{},{}", x * x + 1, (x * y * 5) % 9 + 1)));
+    for (text, said) in [
+        (one, "each line has one comma"),
+        (zeros, "begin with zeros, as what follows a decimal comma does"),
+        (&blanks, "blanks follow some commas, but others stand within numbers"),
+    ] {
+        for layout in [None, Some(TextLayout::Matrix)] {
+            let error = parsed_with(layout, "a.txt", text).map_err(|error| error.to_string());
+            assert!(error.as_ref().is_err_and(|error| error.contains(said)), "{error:?}");
+        }
+    }
+    // Numbers of one width, which leaves no room for blanks in some places.
+    let aligned = "  1, 20,300,400\n 10,200,  3, 40\n100,  2, 30,  4\n  7,  8,  9,-10\n";
+    assert_eq!(matrix(aligned)?.shape, (4, 4));
+    assert_eq!(matrix(" 1,-2, 3,-4\n-5, 6,-7, 8\n")?.shape, (4, 2));
+    Ok(())
+}
+
+/// An empty cell at the beginning of one row is a node, unless tabs are blanks.
+#[test]
+fn rows_of_other_lengths_are_refused() -> TestResult {
+    let rows = "3;1;4;1\n9;2;6;5\n;3.323;0.226;-0.353;9.999\n5;8;9;7\n";
+    assert_refused(rows, "line 3 has 5 numbers, but line 1 has 4");
+    assert_refused(rows.replace(';', ","), "line 3 has 5 numbers, but line 1 has 4");
+    let first = ";3.323;0.226;-0.353;9.999\n3;1;4;1\n9;2;6;5\n5;8;9;7\n";
+    assert_refused(first, "line 2 has 4 numbers, but line 1 has 5");
+    assert_eq!(matrix(rows.replace(';', "\t"))?.shape, (4, 4));
+    Ok(())
+}
+
+/// A row without heights has as many cells as the others, wherever it stands; hyphens between blanks underline names.
+#[test]
+fn rows_of_hyphens_are_rows_between_signs() -> TestResult {
+    for hyphens in ["---;---;---;---", "-;-;-;-"] {
+        let (shape, values) = numbers(format!("{hyphens}\n1;2;3;4\n5;6;7;8\n"))?;
+        assert_eq!((shape, &values[..4]), ((4, 3), &[MISSING; 4][..]), "{hyphens}");
+    }
+    assert_eq!(numbers("a b c d\n-- -- -- --\n1 2 3 4\n5 6 7 8\n")?.0, (4, 2));
+    Ok(())
+}
+
+#[test]
+fn empty_columns_beside_a_map_with_sides_are_noted() -> TestResult {
+    let sides = "# Width: 3 m\n# Height: 4 m\n";
+    let rows = ";3;1;4\n;9;2;6\n;5;8;9\n;2;3;8\n";
+    let channel = parsed(format!("{sides}{rows}"))?;
+    assert_eq!((channel.shape, channel.cell), ((3, 4), Some((1.0, 1.0))));
+    assert!(channel.notes.len() == 1 && channel.notes[0].contains("columns without any number"));
+    Ok(())
+}
+
+/// Numbers in quotes have the decimal sign of those without.
+#[test]
+fn quotes_change_no_decimal_sign() -> TestResult {
+    let mixed = "\"1,5\";2,5;3,25;4\n5;6;\"7,25\";8\n";
+    assert_eq!(numbers(mixed)?.1, [1.5, 2.5, 3.25, 4.0, 5.0, 6.0, 7.25, 8.0]);
+    assert_refused("\"1,5\";2.5;3,25;4\n5;6;7;8\n", "line 1 has a decimal point");
+    Ok(())
+}

@@ -1,0 +1,113 @@
+//! What lines above the numbers say of them.
+
+use super::{MISSING, TestResult, assert_refused, matrix, parsed, shown};
+
+/// Four rows of four heights that are those of no positions and no points.
+const ROWS: &str = "1.5 4.25 1 5\n2 6.5 2 8\n5 8 9.75 3\n1 2 9 4\n";
+
+/// A factor may have a unit behind it and a decimal comma; without a number the heights would be wrong by any factor.
+#[test]
+fn factors_are_used_or_refused() -> TestResult {
+    let sides = "# Width: 1 µm\n# Height: 1 µm\n";
+    for (line, factor) in [
+        ("# Height conversion factor (->nm): 2.5 nm/LSB", 2.5),
+        ("# Height conversion factor (->nm): 2.5e-1", 0.25),
+        ("# Bit2nm: 0,01234 nm", 0.01234),
+    ] {
+        let channel = parsed(format!("{line}\n{sides}{ROWS}"))?;
+        assert_eq!(channel.values[0], 1.5 * factor, "{line}");
+        assert_eq!(channel.height_unit.as_deref(), Some("nm"), "{line}");
+    }
+    for (key, value) in [
+        ("height conversion factor (->nm)", "1,234.5"),
+        ("height conversion factor (->nm)", "ca. 2"),
+        ("bit2nm", "unknown"),
+    ] {
+        let said = format!("multiplied by '{key}', but '{value}' does not begin with a number");
+        assert_refused(format!("# {key}: {value}\n{sides}{ROWS}"), &said);
+    }
+    Ok(())
+}
+
+/// 1,250 is 1.25 or 1250: numbers with decimal points say that it may be the latter, and those with commas the former.
+#[test]
+fn a_comma_before_three_digits_may_part_thousands() -> TestResult {
+    let sides = |width: &str| format!("# Width: {width} µm\n# Height: 1,000 µm\n");
+    let said = "the header has '1,250 µm', whose comma parts thousands or is a decimal one";
+    assert_refused(format!("{}{ROWS}", sides("1,250")), said);
+    let commas = ROWS.replace('.', ",");
+    assert_eq!(parsed(format!("{}{commas}", sides("1,250")))?.cell, Some((1.25 / 4.0, 0.25)));
+    // What can only be decimal.
+    for (width, dx) in [("0,250", 0.0625), ("1,25", 0.3125), ("12,5000", 3.125)] {
+        let channel = parsed(format!("# Width: {width} µm\n# Height: 1 µm\n{ROWS}"))?;
+        assert_eq!(channel.cell.map(|cell| cell.0), Some(dx), "{width}");
+    }
+    Ok(())
+}
+
+#[test]
+fn lines_whose_value_cannot_be_read_are_named() -> TestResult {
+    for line in ["Width: 1.250,5 µm", "Width: ca. 12 µm", "Pixel size: small", "nx: four"] {
+        let channel = matrix(format!("# {line}\n{ROWS}"))?;
+        assert_eq!(channel.cell, None, "{line}");
+        let said = format!("a line above them is not used: '{line}'");
+        assert!(channel.understood.contains(&said), "{}", channel.understood);
+    }
+    Ok(())
+}
+
+/// Sides from the first position to the last are those of one cell less than there are nodes.
+#[test]
+fn steps_of_positions_say_whether_sides_end_at_nodes() -> TestResult {
+    let table = "0 10 11 12 13 14\n10 3 1 4 1 5\n11 9 2 6 5 3\n12 5 8 9 7 9\n13 2 3 8 4 6\n";
+    let sides = |x: f64, y: f64| format!("# Width: {x} mm\n# Height: {y} mm\n{table}");
+    for (header, notes) in [(sides(4.0, 3.0), 3), (sides(5.0, 4.0), 2), (sides(4.0, 4.0), 3)] {
+        let channel = parsed(&header)?;
+        assert_eq!((channel.shape, channel.cell), ((5, 4), Some((1.0, 1.0))), "{header}");
+        assert_eq!(channel.notes.len(), notes, "{:?}", channel.notes);
+    }
+    // Many positions, whose steps the sides of both kinds are close to.
+    let row = |y: usize| (0..100).map(move |x| format!(" {}", x * x * (y + 3) % 101));
+    let rows = (0..3).map(|y| row(y).collect::<String>() + "\n");
+    let axis: String = (0..100).map(|x| format!(" {}", 2 * x + 7)).collect();
+    let text = format!("# Width: 198 m\n# Height: 6 m\n{axis}\n{}", rows.collect::<String>());
+    assert_eq!(parsed(text)?.cell, Some((2.0, 2.0)));
+    Ok(())
+}
+
+/// A mark is written with as many digits as its program likes, and may not be the only one.
+#[test]
+fn stated_marks_may_be_rounded_and_others_count_too() -> TestResult {
+    let expected = [MISSING, 4.25, MISSING, 5.0];
+    for (mark, written) in [("-3.4028234663852886e+38", "-3.402823e+38"), ("-32768", "-9999")] {
+        let rows = ROWS.replacen("1.5", written, 1).replacen(" 1 ", &format!(" {mark} "), 1);
+        let channel = matrix(format!("NODATA_value {mark}\n{rows}"))?;
+        assert_eq!(shown(&channel, |z| z)[..4], expected, "{mark}");
+    }
+    Ok(())
+}
+
+/// Texts of two makers, which know their layout, and one that is not read.
+#[test]
+fn texts_of_instruments_are_named() -> TestResult {
+    let wyko = "Wyko ASCII Data File Format 0 0 1\nX Size\t1\t2\t2\nY Size\t1\t2\t2\nWavelength\t7\t4\t500\n\
+                Mult\t6\t2\t1\nRAW_DATA\n1 2\n3 4\n";
+    assert!(parsed(wyko)?.notes.is_empty());
+    let noted = matrix(wyko)?.notes;
+    assert!(noted.len() == 1 && noted[0].contains("the layout 'matrix' is not used"), "{noted:?}");
+    let dark = super::parse(wyko.replace("500", "0").as_bytes(), "a.asc".as_ref(), None);
+    let said = "Wavelength is 0, but a positive number was expected";
+    assert!(
+        matches!(dark, Err(super::Fault::Malformed { offset: None, reason }) if reason == said)
+    );
+    assert_refused("Zygo ASCII Data File - Format 2\n0 0 0 0 \"\"\n1 2 3\n", "which is not read");
+    Ok(())
+}
+
+#[test]
+fn an_ornament_is_unused_but_a_row_is_not() -> TestResult {
+    let channel = matrix(format!("****\n* * * *\n{ROWS}"))?;
+    assert_eq!(channel.shape, (4, 5));
+    assert!(channel.understood.ends_with("a line above them is not used: '****'"));
+    Ok(())
+}
