@@ -57,8 +57,8 @@ impl Layering {
             ),
             Theory::Slip => (
                 "partial slip",
-                "it takes tangential influence coefficients in proportion to normal ones, and those of layers are not. A solution with both \
-                 is needed, which is not computed here",
+                "it holds for tangential influence coefficients in proportion to normal ones, and those of layers are not. It takes a solution with \
+                 both, which is not computed here",
             ),
             Theory::Creep => (
                 "creep",
@@ -157,7 +157,9 @@ mod tests {
             assert!(Layering::SemiPeriodicHalfSpace.check(theory).is_ok());
             assert_eq!(Layering::OneMaterial.check(theory).is_ok(), theory == Creep);
             let refused = Layering::Several.check(theory).err().map(|error| error.to_string());
-            assert!(refused.is_some_and(|told| told.contains("layers") && told.contains("not")));
+            assert!(
+                refused.is_some_and(|told| told.contains("layers") && told.contains("t takes"))
+            );
         }
     }
 }
