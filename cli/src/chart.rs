@@ -284,3 +284,30 @@ fn dashes(points: &[(i32, i32)]) -> Vec<Vec<(i32, i32)>> {
     }
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Needles end at their points, but for the width of the line: nothing is drawn far above or below.
+    #[test]
+    fn lines_that_turn_back_have_no_spikes() -> Result<(), String> {
+        let (width, height) = (120, 150);
+        let mut pixels = vec![255; 3 * width * height];
+        {
+            let size = (width as u32, height as u32);
+            let area = BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area();
+            let needles = (0..80).map(|k| (20 + k, [60, 90, 62, 88][k as usize % 4]));
+            let points: Vec<(i32, i32)> = needles.collect();
+            draw_line(&area, &points, BLUE.stroke_width(6)).map_err(|error| error.to_string())?;
+            area.present().map_err(|error| error.to_string())?;
+        }
+        let line = 3 * width;
+        let is_blank = |rows: std::ops::Range<usize>| {
+            pixels[rows.start * line..rows.end * line].iter().all(|byte| *byte == 255)
+        };
+        // Half of the width beyond the points, and a pixel.
+        assert!(is_blank(0..56) && is_blank(95..150) && !is_blank(60..91));
+        Ok(())
+    }
+}

@@ -75,6 +75,9 @@ const PLASTIC: [Plastic; 5] = [
     plastic!("plastic_work_per_load", work_per_load),
 ];
 
+/// How far beyond an event a state between two of them may be, relative to these.
+const SAME: f64 = 1e-9;
+
 /// `Ok` if a state is one of a path, or lies between two of its events.
 pub(crate) fn check_on_path(history: &loading::History, state: &LoadingState) -> Result<(), Error> {
     let (step, events) = (state.step, history.events());
@@ -118,9 +121,6 @@ pub(crate) fn iterated<'py>(
     let places = builtins.getattr("range")?.call1((length,))?;
     Ok(builtins.getattr("map")?.call1((sequence.getattr("__getitem__")?, places))?)
 }
-
-/// How far beyond an event a state between two of them may be, relative to these.
-const SAME: f64 = 1e-9;
 
 /// What a history is of.
 #[derive(Clone, Copy, PartialEq)]

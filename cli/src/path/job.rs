@@ -37,6 +37,9 @@ use asperity_cli::outcome::{Failure, is_same};
 /// Contact area over nominal area at which a path ends if nobody says where.
 const AREA_FRACTION: f64 = 0.1;
 
+/// How far two surfaces may be apart that are one, relative to their sides and heights.
+const SAME: f64 = 1e-9;
+
 /// A surface on its grid and what is asked of it.
 pub(super) struct Job {
     surface: Topography,
@@ -553,8 +556,7 @@ fn check_kept(file: Option<&Path>, surface: &Topography) -> Result<(), Failure> 
         },
     };
     // Records count heights from the highest node.
-    let highest = |map: &HeightMap| map.max_height();
-    let shift = highest(surface.map()) - highest(&heights);
+    let shift = surface.map().max_height() - heights.max_height();
     let rounding = SAME * surface.map().peak_to_valley();
     let is_near = |(a, b): (&f64, &f64)| (a - b - shift).abs() <= rounding;
     let [(x, y), (other_x, other_y)] = [surface.grid(), &grid].map(Grid::sides);
@@ -570,9 +572,6 @@ fn check_kept(file: Option<&Path>, surface: &Topography) -> Result<(), Failure> 
         file.display()
     )))
 }
-
-/// How far two surfaces may be apart that are one, relative to their sides and heights.
-const SAME: f64 = 1e-9;
 
 /// From differences of the heights, whatever the surface is from: a record knows nothing else.
 fn rms_gradient(surface: &Topography) -> Result<f64, Failure> {

@@ -241,10 +241,10 @@ impl ReadOptions {
             ));
         }
         let (nx, ny) = channel.shape;
-        if let (Some((_, dy)), Some(_), None) = (cell, self.side, self.side_y) {
-            let side = ny as f64 * dy;
+        if let (Some((dx, dy)), Some(_), None) = (cell, self.side, self.side_y) {
+            let (axis, side) = if nx == 1 { ("x", dx) } else { ("y", ny as f64 * dy) };
             notes.push(format!(
-                "cells are assumed to be square: the side along y is {}",
+                "cells are assumed to be square: the side along {axis} is {}",
                 quantity(side, "m", 6)
             ));
         }
