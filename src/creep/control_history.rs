@@ -130,7 +130,7 @@ impl ViscoelasticBed<'_> {
     /// way are steps of their own; else the steps are from time to time.
     ///
     /// A bed that has made no step yet begins with the history. Another one goes on with it from its present time, at
-    /// which corners have been passed.
+    /// which corners have been passed. Nothing bears before the first corner.
     ///
     /// # Errors
     ///

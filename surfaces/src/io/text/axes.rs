@@ -5,6 +5,7 @@
 
 use super::header::Header;
 use super::layout::TextLayout;
+use super::run::{Run, UNEVEN};
 use super::table::Table;
 use crate::io::fault::Fault;
 
@@ -12,21 +13,12 @@ use crate::io::fault::Fault;
 const FEWEST: usize = 4;
 const FEWEST_OF_BOTH: usize = 3;
 
-/// How far a position may be from even spacing, in spacings: at all, and if few numbers are to be positions for sure.
-const UNEVEN: f64 = 0.02;
+/// How far a position may be from even spacing, in spacings, if few numbers are to be positions for sure.
 const UNEVEN_OF_FEW: f64 = 1e-3;
 const MANY: usize = 8;
 
 /// What rounding leaves of a difference that is zero, relative to the numbers.
 const ROUNDING: f64 = 1e-9;
-
-/// Evenly spaced numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Run {
-    start: f64,
-    step: f64,
-    count: usize,
-}
 
 /// What was found in place of heights.
 #[derive(Debug, Default)]
@@ -183,11 +175,6 @@ impl Side {
     }
 }
 
-/// Whether numbers can be positions.
-pub(super) fn are_positions(numbers: &[f64]) -> bool {
-    Run::of(numbers, UNEVEN).is_some()
-}
-
 /// Whether four lines are those of a surface of second degree across them, and of none of first degree.
 fn goes_on(lines: [Vec<f64>; 4]) -> bool {
     let [a, b, c, d] = &lines;
@@ -205,39 +192,4 @@ fn is_straight(numbers: &[f64]) -> bool {
     let mut known = numbers.iter().filter(|number| number.is_finite());
     let first = known.next();
     known.all(|number| Some(number) == first) || Run::with_gaps(numbers, UNEVEN).is_some()
-}
-
-impl Run {
-    /// Numbers that grow, or fall, by even steps; one is even.
-    fn of(numbers: &[f64], allowed: f64) -> Option<Self> {
-        let is_whole = !numbers.is_empty() && numbers.iter().all(|number| number.is_finite());
-        Self::with_gaps(numbers, allowed).filter(|_| is_whole)
-    }
-
-    /// The same, whatever is missing between them.
-    fn with_gaps(numbers: &[f64], allowed: f64) -> Option<Self> {
-        let known = || numbers.iter().enumerate().filter(|(_, number)| number.is_finite());
-        let ((first, start), (last, end)) = (known().next()?, known().next_back()?);
-        let step = if last > first { (end - start) / (last - first) as f64 } else { 1.0 };
-        let allowed = step.abs() * allowed;
-        let is_even = |(k, number): (usize, &f64)| {
-            (number - start - (k - first) as f64 * step).abs() <= allowed
-        };
-        let is_run = step.is_finite() && step != 0.0 && known().all(is_even);
-        is_run.then_some(Self { start: *start, step, count: numbers.len() })
-    }
-
-    /// Whether it counts from 0 or 1.
-    fn counts(self) -> bool {
-        self.step == 1.0 && (self.start == 0.0 || self.start == 1.0)
-    }
-
-    fn told(self, line: &str, along: &str) -> String {
-        let Self { start, step, count } = self;
-        let end = start + step * (count - 1) as f64;
-        let what = if self.counts() { "running numbers" } else { "positions" };
-        format!(
-            "the first {line} is evenly spaced from {start} to {end:.6}: {what} along {along}, no heights"
-        )
-    }
 }

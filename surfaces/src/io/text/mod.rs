@@ -26,6 +26,7 @@ mod names;
 mod points;
 mod profile;
 mod quotes;
+mod run;
 mod table;
 mod words;
 mod wyko;

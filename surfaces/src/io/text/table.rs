@@ -2,9 +2,9 @@
 
 use crate::io::fault::Fault;
 
-use super::axes;
 use super::dialect::{Cells, Dialect, is_row};
 use super::header::Header;
+use super::run::{Run, UNEVEN};
 use crate::io::lines::{Line, Lines};
 use crate::number::counted;
 
@@ -78,7 +78,7 @@ impl Table {
             return Ok(());
         };
         let is_corner =
-            place == 0 && numbers.len() + 1 == cells.len() && axes::are_positions(&numbers);
+            place == 0 && numbers.len() + 1 == cells.len() && Run::of(&numbers, UNEVEN).is_some();
         let is_row = cells.len() == self.columns && 2 * numbers.len() > cells.len();
         ensure!(
             is_corner || !is_row,
