@@ -20,7 +20,7 @@ use crate::argument::one_of;
 use crate::arrays::{self, Found, Kind, Lengths};
 use crate::choice;
 use crate::compute::detached;
-use crate::errors::{Failure, Fallible, in_python};
+use crate::errors::{Fallible, in_python};
 use crate::warnings::warn_all;
 
 /// A rough surface: heights in metres on a rectangular grid, positive towards the other body.
