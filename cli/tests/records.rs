@@ -389,6 +389,7 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
         ),
         ("report r.npz --out r.npz", &["--out would replace the record r.npz"]),
         ("gather . --loads 1", &["--loads takes at least 2"]),
+        ("gather . --loads 18446744073709551615", &["at most 1000000"]),
         ("path --nodes 32 --record folder", &["folder"]),
         ("path --nodes 32 --record out/path.csv", &["ends with .npz"]),
         ("path --nodes 32 --fill", &["--fill", "generated"]),

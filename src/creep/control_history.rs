@@ -79,6 +79,9 @@ impl Steps {
         let is_so = self.growth >= 1.0 && self.growth.is_finite();
         Error::require("growth of steps", self.growth, is_so, "at least 1 and finite")?;
         Error::require("end of a history", end, end.is_finite(), "finite")?;
+        // Beside a time far from 0 they would be rounding, and one step be left.
+        let is_possible = self.least <= MOST_STEPS;
+        Error::require("number of steps", self.least as f64, is_possible, "at most ten million")?;
         let mut times = Vec::new();
         let shortest = prony.relaxation_terms().first().map(|term| term.time);
         let mut corners = corners.corners().iter().map(|corner| corner.0).peekable();
@@ -221,6 +224,8 @@ mod tests {
         }
         let most = (0..70).fold(Steps::default(), |steps, _| steps.halved());
         assert_eq!(most.least, usize::MAX);
+        let later = PiecewiseLinear::new([(1e3, 0.0), (1e3, 1.0)])?;
+        assert!(matches!(most.times(&body, &later, 1001.0), Err(Error::OutOfRange { .. })));
         Ok(())
     }
 

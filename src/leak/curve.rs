@@ -4,7 +4,7 @@ use super::{CriticalConstriction, Leak, Seal};
 use crate::loading::History;
 use crate::patches::{Connectivity, Percolation};
 use crate::surface::Axis;
-use crate::{ContactEvent, Error, LoadingPath, LoadingState};
+use crate::{ContactEvent, ContactGrowth, Error, LoadingPath, LoadingState};
 
 /// The leak at one state of a path, without its fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,7 +79,9 @@ impl Seal {
             let state = events[place];
             Ok(LeakPoint::new(state, &self.leak_at(path, &state)?))
         };
-        let (closing, last) = self.closing_by_gap(events, by_contact, |place| at(place, path))?;
+        let narrows = path.problem().growth() >= ContactGrowth::Monotone;
+        let (closing, last) =
+            self.closing_by_gap((events, narrows), by_contact, |place| at(place, path))?;
         let mut points: Vec<Placed> = Vec::new();
         if last.is_some_and(|(place, _)| place > 0) {
             points.push((0, at(0, path)?));
@@ -104,12 +106,13 @@ impl Seal {
 type Placed = (usize, LeakPoint);
 
 impl Seal {
-    /// The place of the first state that does not leak, up to that which closes by contact, and the last that does:
-    /// gaps only become narrower under load. Nodes that touch together are closed with the first of them, and where
-    /// there is a least gap many states do not leak before contact closes.
+    /// The place of the first state from which on nothing leaks, up to that which closes by contact, and the last that
+    /// does: where gaps only become narrower under load, which a body promises, the first that does not. Nodes that
+    /// touch together are closed with the first of them, and where there is a least gap many states do not leak before
+    /// contact closes.
     fn closing_by_gap(
         &self,
-        states: &[LoadingState],
+        (states, narrows): (&[LoadingState], bool),
         by_contact: Option<usize>,
         mut at: impl FnMut(usize) -> Result<LeakPoint, Error>,
     ) -> Result<(Option<usize>, Option<Placed>), Error> {
@@ -120,8 +123,8 @@ impl Seal {
             let last = last.map(|place| Ok::<_, Error>((place, at(place)?))).transpose()?;
             return Ok((by_contact, last));
         }
-        // In strides backwards, each twice as long, and then by halves.
-        let mut stride = if self.least_gap() == 0.0 { 1 } else { end.div_ceil(2) };
+        // In strides backwards, each twice as long, and then by halves; one by one where gaps may widen between.
+        let mut stride = if self.least_gap() == 0.0 || !narrows { 1 } else { end.div_ceil(2) };
         let (mut closed, mut last) = (end, None::<Placed>);
         loop {
             let open = last.map_or(0, |(place, _)| place + 1);
@@ -135,7 +138,7 @@ impl Seal {
             let point = at(place)?;
             if point.leak_rate == 0.0 {
                 closed = place;
-                stride *= 2;
+                stride *= if narrows { 2 } else { 1 };
             } else {
                 last = Some((place, point));
             }

@@ -61,18 +61,13 @@ pub(super) struct Elimination {
 
 impl Elimination {
     /// Eliminates all nodes. They lie at `places` of a lattice, and edges lead from one place to the next; along the
-    /// second direction also from the last to the first place if it `wraps`.
-    pub(super) fn new(graph: &Graph, places: &[[usize; 2]], wraps: bool) -> Self {
+    /// second direction also from the last place of a `ring` to the first, if it is one.
+    pub(super) fn new(graph: &Graph, places: &[[usize; 2]], ring: Option<usize>) -> Self {
         let nodes = graph.len();
         let (eliminated, front) = (vec![false; nodes + 2], vec![NONE; nodes + 2]);
-        let mut dissection = Dissection { graph, places, eliminated, front, blocks: Vec::new() };
-        let all = 0..nodes as u32;
-        if wraps {
-            let (line, others) = all.partition(|&node| places[node as usize][1] == 0);
-            dissection.eliminate(line, vec![others]);
-        } else {
-            dissection.dissect(all.collect());
-        }
+        let blocks = Vec::new();
+        let mut dissection = Dissection { graph, places, ring, eliminated, front, blocks };
+        dissection.dissect((0..nodes as u32).collect());
         Self { blocks: dissection.blocks, nodes }
     }
 
@@ -126,6 +121,8 @@ const NONE: u32 = u32::MAX;
 struct Dissection<'a> {
     graph: &'a Graph,
     places: &'a [[usize; 2]],
+    /// The last place along the second direction, if an edge leads from there to the first.
+    ring: Option<usize>,
     eliminated: Vec<bool>,
     /// The place of each node among those of the present block.
     front: Vec<u32>,
@@ -147,6 +144,12 @@ impl Dissection<'_> {
         };
         let length = |sorted: &[usize]| sorted[sorted.len() - 1] - sorted[0];
         let [along, across] = [sorted(0), sorted(1)];
+        // A ring is opened once it is no longer than wide.
+        let is_ring = across[0] == 0 && self.ring == across.last().copied();
+        if is_ring && length(&along) <= length(&across) {
+            let (line, others) = nodes.iter().partition(|node| places[**node as usize][1] == 0);
+            return self.eliminate(line, vec![others]);
+        }
         let (axis, sorted) =
             if length(&along) >= length(&across) { (0, along) } else { (1, across) };
         let middle = sorted[sorted.len() / 2];

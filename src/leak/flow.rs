@@ -92,7 +92,9 @@ impl Flow {
     fn eliminate(&mut self, network: &Network, flowing: &[usize]) -> bool {
         let places: Vec<_> = flowing.iter().map(|&node| network.layout.place(node)).collect();
         let graph = self.graph(network, flowing, false);
-        let elimination = Elimination::new(&graph, &places, network.layout.wraps());
+        let layout = &network.layout;
+        let ring = layout.wraps().then_some(layout.nodes[1] - 1);
+        let elimination = Elimination::new(&graph, &places, ring);
         self.pressures = elimination.solve(&vec![0.0; flowing.len()], [1.0, 0.0]);
         self.settle(network, flowing, 0.0, |pressures, residual, _| {
             let correction = elimination.solve(residual, [0.0; 2]);

@@ -96,9 +96,9 @@ pub(crate) fn replay(
     let states = history.states();
     for (k, state) in states.iter().enumerate() {
         let is_last = k + 1 == states.len();
+        let node = node_of(grid, state.node)?;
         if state.event != ContactEvent::Limit {
             step += 1;
-            let node = node_of(grid, state.node)?;
             match state.event {
                 ContactEvent::Release => {
                     contact.remove(node)?;

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::body::Subsurface;
 use super::tensor::{Measure, StressField};
 use crate::kernel::{Base, LayeredBody};
-use crate::patches::{Connectivity, Patches};
+use crate::patches::{Connectivity, Patch, Patches};
 use crate::{Error, StressError};
 
 /// The greatest value of a measure, and where it is.
@@ -97,8 +97,8 @@ const REFINED: usize = 3;
 
 impl Subsurface {
     /// Depths at which stresses under a pressure are worth looking at \[m\]: the surface, and from a tenth of a cell on
-    /// by a factor of 1.25 to the diameter of a circle of the area of the largest patch; of layers their interfaces as
-    /// well, from both sides, and their middles.
+    /// by a factor of 1.25 to the diameter of a circle of the area of the largest patch, or to the width of one that goes
+    /// on without end, a line contact; of layers their interfaces as well, from both sides, and their middles.
     ///
     /// # Errors
     ///
@@ -109,12 +109,11 @@ impl Subsurface {
         grid.check_finite("pressure", pressure)?;
         let contact = pressure.map(|pressure| pressure > 0.0);
         let patches = Patches::new(&contact, &grid, self.boundary(), Connectivity::Eight)?;
-        let areas = patches.patches().iter().map(|patch| patch.area);
-        let largest = areas.fold(0.0, f64::max);
-        if largest == 0.0 {
+        let sides = grid.sides();
+        let deepest = patches.patches().iter().map(|patch| size(patch, sides)).fold(0.0, f64::max);
+        if deepest == 0.0 {
             return Err(StressError::NoLoad.into());
         }
-        let deepest = 2.0 * (largest / std::f64::consts::PI).sqrt();
         let mut depths = vec![0.0];
         let mut depth = LEAST * grid.cell_area().sqrt();
         while depth < RATIO.sqrt() * deepest {
@@ -252,6 +251,18 @@ impl Subsurface {
         let field = self.at_depth(pressure, depth)?;
         survey.insert(DepthSurvey::new(self, &field));
         visit(&field)
+    }
+}
+
+/// The diameter of a circle of the area of a patch, or the width of a strip of its area if that goes on without end
+/// and is wider; without end along both sides, the longer side.
+fn size(patch: &Patch, (x, y): (f64, f64)) -> f64 {
+    let round = 2.0 * (patch.area / std::f64::consts::PI).sqrt();
+    match patch.wraps {
+        (false, false) => round,
+        (true, false) => round.max(patch.area / x),
+        (false, true) => round.max(patch.area / y),
+        (true, true) => round.max(x).max(y),
     }
 }
 

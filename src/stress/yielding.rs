@@ -38,8 +38,9 @@ impl Subsurface {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the yield stress; [`StressError::BehindHardness`]; those of [`Self::survey`] and
-    /// [`LoadingPath::fields_at`](LoadingPath::fields_at).
+    /// [`Error::NotPositive`] for the yield stress; [`StressError::BehindHardness`]; [`Error::NoConvergence`] if the
+    /// greatest stress jumps past the yield stress, at depths that do not show where it is; those of [`Self::survey`]
+    /// and [`LoadingPath::fields_at`](LoadingPath::fields_at).
     pub fn first_yield(
         &self,
         path: &mut LoadingPath,
@@ -138,7 +139,11 @@ fn first_reached(
             above = found;
         }
     }
-    Ok(Some(above))
+    let residual = above.greatest.value / yield_stress - 1.0;
+    if residual <= FirstYield::TOLERANCE {
+        return Ok(Some(above));
+    }
+    Err(Error::NoConvergence { residual, tolerance: FirstYield::TOLERANCE, iterations: TRIALS })
 }
 
 /// A load between two, by a power law through both stresses, not closer to either than a tenth of their logarithms'

@@ -1,13 +1,14 @@
 //! Leaks of the states of paths.
 
+use asperity::kernel::{Base, Layer, LayeredBody};
 use asperity::leak::Seal;
 use asperity::loading::History;
 use asperity::patches::{Connectivity, Percolation};
 use asperity::surface::{Axis, HeightMap};
 use asperity::updater::ConjugateGradient;
 use asperity::{
-    Boussinesq, ContactTarget, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
-    SelfAffine, Spectral,
+    Boussinesq, ContactEvent, ContactTarget, Error, Grid, InfluenceKernel, Layered, LoadingSolver,
+    PeriodicBoussinesq, SelfAffine, Spectral,
 };
 use nalgebra::DMatrix;
 
@@ -247,6 +248,38 @@ fn nodes_that_touch_together_close_at_once() {
             .map(|seal| seal.curve(&mut path, &history, 20).unwrap().closing.unwrap().step);
         assert!(closing[1] <= closing[0]);
     }
+}
+
+/// On a stiff coat gaps may widen under load though no node leaves: a seal with a least gap closes where nothing leaks
+/// from there on, and not where it is closed for a while.
+#[test]
+fn a_seal_on_a_coat_may_open_again() {
+    let grid = Grid::square(4, 4e-5).unwrap();
+    let (young, thickness) = (200e9, 5e-6);
+    let base = Base::HalfSpace { young: 7.4e9, poisson: 0.3 };
+    let body = LayeredBody::new(&[Layer { young, poisson: 0.3, thickness }], base).unwrap();
+    let kernel = Layered::free(grid, body).unwrap();
+    // In nanometres, rows along x.
+    let rows = [139, 1, 15, 935, 433, 183, 274, 762, 118, 348, 467, 126, 269, 586, 827, 23];
+    let heights = DMatrix::from_fn(4, 4, |ix, iy| 1e-9 * f64::from(rows[ix + 4 * iy]));
+    let surface = HeightMap::new(heights).unwrap();
+    let builder = LoadingSolver::builder(&surface, &kernel);
+    let mut path = builder.max_area_fraction(0.8).build().unwrap();
+    let history = path.run().unwrap();
+    assert!(history.states().iter().all(|state| state.event != ContactEvent::Release));
+    let seal = Seal::new(1e-3, 1.0, Axis::X).unwrap().with_least_gap(2.459e-7).unwrap();
+    let leaks: Vec<bool> = history
+        .states()
+        .iter()
+        .map(|state| !seal.leak_at(&mut path, state).unwrap().is_closed())
+        .collect();
+    let opens_again = leaks.windows(2).any(|pair| !pair[0] && pair[1]);
+    assert!(opens_again, "{leaks:?}");
+    let curve = seal.curve(&mut path, &history, 20).unwrap();
+    let last = leaks.iter().rposition(|leaks| *leaks).unwrap();
+    assert_eq!(curve.closing.unwrap(), history.states()[last + 1]);
+    let points = curve.points.iter().filter(|point| point.leak_rate > 0.0);
+    assert_eq!(points.last().unwrap().state, history.states()[last]);
 }
 
 /// Without a factor the approach at which nodes touch together is an estimate, and they overlap by what it is off: no

@@ -31,6 +31,42 @@ fn depths_reach_from_a_tenth_of_a_cell_to_a_patch() -> Result<(), Error> {
     Ok(())
 }
 
+/// A line contact on a strip that repeats along its short side: its patch is far longer than its area says, and the
+/// greatest stresses lie at half of its width, behind others at the surface.
+#[test]
+fn line_contacts_on_strips_are_looked_at_to_their_width() -> Result<(), Error> {
+    let nodes = 128;
+    for (boundary, shape) in [(Boundary::PeriodicY, (nodes, 1)), (Boundary::PeriodicX, (1, nodes))]
+    {
+        let cell = 2.5 / nodes as f64;
+        let grid = Grid::new(shape.0, shape.1, cell, cell)?;
+        // Half a width of 1, as Hertz has it.
+        let pressure = DMatrix::from_fn(shape.0, shape.1, |ix, iy| {
+            let y = (ix.max(iy) as f64 + 0.5) * cell - 1.25;
+            (1.0 - y * y).max(0.0).sqrt()
+        });
+        for (poisson, friction) in [(0.25, 0.1), (0.3, 0.25), (0.25, 0.0)] {
+            let angle = if shape.0 > 1 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
+            let body = Subsurface::new(grid, boundary, poisson)?.sliding(friction, angle)?;
+            let found = body.survey(&pressure, None)?;
+            let everywhere: Vec<f64> = (0..=60).map(|k| 0.025 * f64::from(k)).collect();
+            let all = body.survey(&pressure, Some(&everywhere))?;
+            for measure in [Measure::VonMises, Measure::GreatestShear] {
+                let [found, all] = [&found, &all].map(|survey| survey.greatest(measure));
+                // Depths 0.025 apart miss a vertex by some 1e-4 of it.
+                assert!(found.value > 0.999 * all.value, "{found:?} {all:?}");
+            }
+            let shear = found.greatest(Measure::GreatestShear);
+            // Hertz: 0.3003 at 0.786.
+            if friction == 0.0 {
+                assert!((shear.value / 0.3003 - 1.0).abs() < 2e-3, "{shear:?}");
+                assert!((shear.depth - 0.786).abs() < 0.02, "{shear:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Where many small patches press together, the greatest stress may lie deeper than any of them is wide: depths go on
 /// until it is found.
 #[test]

@@ -20,6 +20,9 @@ use table::Table;
 /// Rows of the table on the screen.
 const ROWS: usize = 12;
 
+/// More loads than any path has events worth reading.
+const MOST_LOADS: usize = 1_000_000;
+
 /// Mean and standard deviation of paths, at common loads: of `asperity path --seeds`, or of several maps of one
 /// specimen
 ///
@@ -52,8 +55,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
     }
-    if options.loads < 2 {
-        return Err(Failure::request("--loads takes at least 2: the first and the last in common"));
+    if !(2..=MOST_LOADS).contains(&options.loads) {
+        return Err(Failure::request(format!(
+            "--loads takes at least 2, the first and the last in common, and at most {MOST_LOADS}"
+        )));
     }
     let files = paths(&options.directory)?;
     check_alike(&files)?;
