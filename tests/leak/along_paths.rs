@@ -278,8 +278,8 @@ fn a_seal_on_a_coat_may_open_again() {
     let curve = seal.curve(&mut path, &history, 20).unwrap();
     let last = leaks.iter().rposition(|leaks| *leaks).unwrap();
     assert_eq!(curve.closing.unwrap(), history.states()[last + 1]);
-    let points = curve.points.iter().filter(|point| point.leak_rate > 0.0);
-    assert_eq!(points.last().unwrap().state, history.states()[last]);
+    let mut points = curve.points.iter().filter(|point| point.leak_rate > 0.0);
+    assert_eq!(points.next_back().unwrap().state, history.states()[last]);
 }
 
 /// Without a factor the approach at which nodes touch together is an estimate, and they overlap by what it is off: no
