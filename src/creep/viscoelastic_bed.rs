@@ -369,10 +369,11 @@ impl<'a> ViscoelasticBed<'a> {
         let known = self.forces.len();
         for element in 0..known {
             let full = self.full(step, element);
-            if left < full {
+            if left < full - ROUNDING * load {
                 return Some(Front { element, force: left, separation: 0.0 });
             }
-            left -= full;
+            // At a knot, but for rounding, the next element has begun.
+            left = (left - full).max(0.0);
         }
         // All elements bear what they can, and by rounding the load is a little more.
         if let Some(element) = known.checked_sub(1)
@@ -406,11 +407,11 @@ impl<'a> ViscoelasticBed<'a> {
         let known = self.forces.len();
         for element in 0..known.min(end) {
             let closes = self.elements[element].approach * step.slope * self.full(step, element);
-            if left < closes {
+            if left < closes - ROUNDING * approach.abs() {
                 let force = left / self.elements[element].approach / step.slope;
                 return Some(Front { element, force, separation: 0.0 });
             }
-            left -= closes;
+            left = (left - closes).max(0.0);
         }
         // All elements are compressed in full, and by rounding the approach is a little more.
         if known >= end && left <= ROUNDING * approach.abs() {

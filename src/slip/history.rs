@@ -47,6 +47,8 @@ pub struct SlipHistory<'a> {
     friction: Friction,
     load: BedState,
     pieces: Vec<Piece>,
+    /// What rounding made of T in the last step in both loads: at the greater of them.
+    rounding: f64,
     dissipation: f64,
 }
 
@@ -97,7 +99,7 @@ impl<'a> SlipHistory<'a> {
     #[must_use]
     pub fn new(bed: &'a Bed<'a>, friction: Friction) -> Self {
         let load = bed.first();
-        Self { bed, friction, load, pieces: Vec::new(), dissipation: 0.0 }
+        Self { bed, friction, load, pieces: Vec::new(), rounding: 0.0, dissipation: 0.0 }
     }
 
     /// To a load P and a tangential load T \[N\], along a straight line in both; returns the state there.
@@ -123,6 +125,7 @@ impl<'a> SlipHistory<'a> {
                 false => self.load = target,
             }
             self.turn(force)?;
+            self.slide_at_limit(force);
             return Ok(self.state());
         }
         let mut change = force - self.force();
@@ -142,6 +145,8 @@ impl<'a> SlipHistory<'a> {
         } else {
             self.relieve(target, slope, change)?;
         }
+        self.rounding = 4.0 * f64::EPSILON * self.friction.coefficient() * load.max(before);
+        self.slide_at_limit(force);
         Ok(self.state())
     }
 
@@ -242,7 +247,7 @@ impl<'a> SlipHistory<'a> {
         let change = force - self.force();
         // Sums at greater loads before have rounding of their own.
         let borne = self.friction.coefficient() * self.load.load;
-        let rounding = self.rounding_of_force().max(SAME_LOAD * borne);
+        let rounding = self.rounding_of_force().max(self.rounding).max(SAME_LOAD * borne);
         if change.abs() <= rounding || self.load.load == 0.0 {
             return Ok(());
         }
@@ -259,6 +264,14 @@ impl<'a> SlipHistory<'a> {
             if reach > below.start.load - SAME_LOAD * load {
                 return Ok(());
             }
+        }
+    }
+
+    /// The whole contact slips where T is the limit, also what rounding would leave of the stick zone.
+    fn slide_at_limit(&mut self, force: f64) {
+        let limit = self.friction.coefficient();
+        if force.abs() >= limit * self.load.load && self.load.load > 0.0 {
+            self.replace(force.signum() * limit, self.bed.first(), self.load);
         }
     }
 

@@ -427,6 +427,28 @@ fn the_whole_path_is_borne() {
     assert!(unloading.at(100.0).unwrap().contact.load < last);
 }
 
+/// At the load, or the approach, of an event its node touches, at once and however long it is held: elastic bodies do
+/// not creep.
+#[test]
+fn knots_that_are_held_have_the_nodes_of_the_path() {
+    let case = free();
+    let bed = Bed::new(&case.history).unwrap();
+    let elastic = Prony::elastic(1.0).unwrap();
+    // The last one has no knot behind it.
+    let events = case.history.states();
+    for state in &events[1..events.len() - 1] {
+        let mut contacts = [0, 1].map(|_| ViscoelasticBed::new(&bed, &elastic).unwrap());
+        let control =
+            [Control::Load(state.contact.load), Control::Approach(state.contact.approach)];
+        for (contact, control) in contacts.iter_mut().zip(control) {
+            for duration in [0.0, 0.3, 0.4, 0.3] {
+                let found = contact.step(duration, control).unwrap();
+                assert_eq!(found.contact_nodes, state.contact.contact_nodes, "{control:?}");
+            }
+        }
+    }
+}
+
 /// A history that is asked for before its first corner has nothing there, and the corner is a jump all the same.
 #[test]
 fn nothing_bears_before_the_first_corner() {

@@ -498,8 +498,36 @@ fn a_load_beyond_the_last_by_rounding_is_the_last() {
     assert!(matches!(refused, Err(Error::Bed(BedError::PathEndsBefore { .. }))), "{refused:?}");
 }
 
+/// Where T arrives at what friction bears nothing sticks, whatever the ratio before; and no step along the limit has a
+/// displacement.
+#[test]
+fn nothing_sticks_at_the_limit() {
+    let (_path, history) = path(2);
+    let bed = Bed::new(&history).unwrap();
+    let share = |k: u32| (1e4 * libm::sin(f64::from(k))).rem_euclid(1.0);
+    let mut slid = 0;
+    for k in 0..2000 {
+        let mut joint = SlipHistory::new(&bed, friction());
+        let [first, second] =
+            [1, 2].map(|prime| (0.01 + 0.99 * share(5 * k + prime)) * bed.last_load());
+        // Up to a 10⁻⁶ of friction's limit.
+        let ratio = MU * (1.0 - 10_f64.powf(-6.0 * share(5 * k + 3)));
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        joint.to(first, ratio * first).unwrap();
+        if joint.to(second, sign * MU * second).is_err() {
+            continue;
+        }
+        slid += 1;
+        let state = joint.state();
+        assert_eq!((state.stick_nodes, state.tangential_stiffness), (0, 0.0), "{k}: {state:?}");
+        let further = joint.to(0.5 * second, sign * MU * 0.5 * second);
+        assert!(matches!(further, Err(Error::Slip(SlipError::StaysAtLimit { .. }))), "{k}");
+    }
+    assert!(slid > 1900, "{slid}");
+}
+
 /// The same loads once more are no turn: what a sum of pieces lacks of the load asked for is rounding, also where greater
-/// loads came before.
+/// loads came before, be it ten thousand times as great.
 #[test]
 fn a_corner_that_is_held_changes_nothing() {
     let (_path, history) = path(2);
@@ -510,7 +538,8 @@ fn a_corner_that_is_held_changes_nothing() {
         let mut joint = SlipHistory::new(&bed, friction());
         for corner in 0..3 {
             let [a, b] = [2, 3].map(|prime| share(6 * k + 2 * corner + prime));
-            let load = (0.1 + 0.9 * a) * bed.last_load();
+            let below = if corner == 0 { 1.0 } else { 10_f64.powf(-4.0 * share(7 * k + corner)) };
+            let load = (0.1 + 0.9 * a) * below * bed.last_load();
             let force = (1.2 * b - 0.6) * MU * load;
             if joint.to(load, force).is_err() {
                 break;
