@@ -83,14 +83,11 @@ pub(crate) fn check_on_path(history: &loading::History, state: &LoadingState) ->
     let (step, events) = (state.step, history.events());
     let after = events.partition_point(|event| event.step <= step);
     let present = history.states().last().map_or(0, |last| last.step);
-    let (Some(event), Some(last)) =
-        (after.checked_sub(1).and_then(|k| events.get(k)), history.states().last())
-    else {
+    let event = after.checked_sub(1).and_then(|k| events.get(k));
+    let last = history.states().last().filter(|last| step <= last.step);
+    let (Some(event), Some(last)) = (event, last) else {
         return Err(Error::StateNotReached { step, present });
     };
-    if step > present {
-        return Err(Error::StateNotReached { step, present });
-    }
     let next = events.get(after).unwrap_or(last);
     let off = |quantity, value| {
         let (load, approach) = (state.contact.load, state.contact.approach);

@@ -79,9 +79,12 @@ impl Steps {
         let is_so = self.growth >= 1.0 && self.growth.is_finite();
         Error::require("growth of steps", self.growth, is_so, "at least 1 and finite")?;
         Error::require("end of a history", end, end.is_finite(), "finite")?;
+        let check = |count: usize| {
+            let (is_possible, expected) = (count <= MOST_STEPS, "at most ten million");
+            Error::require("number of steps", count as f64, is_possible, expected)
+        };
         // Beside a time far from 0 they would be rounding, and one step be left.
-        let is_possible = self.least <= MOST_STEPS;
-        Error::require("number of steps", self.least as f64, is_possible, "at most ten million")?;
+        check(self.least)?;
         let mut times = Vec::new();
         let shortest = prony.relaxation_terms().first().map(|term| term.time);
         let mut corners = corners.corners().iter().map(|corner| corner.0).peekable();
@@ -108,14 +111,7 @@ impl Steps {
                 if next >= until - 0.3 * step.min(longest) || next <= now {
                     break;
                 }
-                let count = times.len();
-                let is_possible = count <= MOST_STEPS;
-                Error::require(
-                    "number of steps",
-                    count as f64,
-                    is_possible,
-                    "at most ten million",
-                )?;
+                check(times.len())?;
                 times.push(next);
                 now = next;
                 step *= self.growth;

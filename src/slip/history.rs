@@ -270,7 +270,8 @@ impl<'a> SlipHistory<'a> {
     /// The whole contact slips where T is the limit, also what rounding would leave of the stick zone.
     fn slide_at_limit(&mut self, force: f64) {
         let limit = self.friction.coefficient();
-        if force.abs() >= limit * self.load.load && self.load.load > 0.0 {
+        let borne = limit * self.load.load;
+        if borne > 0.0 && force.abs() >= borne {
             self.replace(force.signum() * limit, self.bed.first(), self.load);
         }
     }

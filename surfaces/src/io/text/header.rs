@@ -123,14 +123,14 @@ impl Header {
     }
 
     /// What heights are multiplied by: without it they would be wrong by any factor.
-    fn factor_of(&mut self, key: &str, value: &str) -> Result<Option<f64>, Fault> {
+    fn factor_of(&mut self, key: &str, value: &str) -> Result<f64, Fault> {
         let factor = self.length(value).ok_or_else(|| {
             fault!(
                 "the heights have to be multiplied by '{key}', but '{value}' does not begin with a number; \
                  write it with a decimal point, and without signs that part thousands"
             )
         })?;
-        Ok(Some(factor.value))
+        Ok(factor.value)
     }
 
     /// A line with a sign between key and value. Returns whether the value can be read, `None` for an unknown key.
@@ -177,11 +177,11 @@ impl Header {
             // A unit of its own takes precedence, on whichever line it stands.
             if self.value_unit.is_none() {
                 self.is_bit2nm = true;
-                self.factor = self.factor_of(&key, value)?;
+                self.factor = Some(self.factor_of(&key, value)?);
                 self.value_unit = some("nm");
             }
         } else if let Some(unit) = key.strip_prefix("height conversion factor (->") {
-            self.factor = self.factor_of(&key, value)?;
+            self.factor = Some(self.factor_of(&key, value)?);
             self.value_unit = some(unit.trim_end_matches(')'));
         } else {
             return Ok(None);
