@@ -34,7 +34,7 @@
 //!
 //! ** interface law of a rough surface by asperity 0.1.0, in SI units
 //! ** overclosure: what the mean gap has closed since first touch; all quantities per nominal area
-//! ** 14 rows; pressures between them err by at most 1e-1 of their value, or of a thousandth of the greatest one below that; other quantities by as much of theirs
+//! ** 14 rows; between them values err by at most 1e-1 of themselves (pressures below a thousandth of the greatest: of that thousandth)
 //! *SURFACE INTERACTION, NAME=ROUGH_INTERFACE
 //! *SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR
 //! 0.000000000000e0, 0.000000000000e0
