@@ -259,3 +259,8 @@ impl Computed {
         Ok(Self { fields: found, certificate, pressure })
     }
 }
+
+/// Compiles the code of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,9 +1,9 @@
 //! Files of instruments and of other programs: what other readers find in them.
 //!
-//! The files are not part of this project. They are looked for in the folder that the environment variable
-//! `ASPERITY_SURFACE_FILES` names, or in `../shared/reference/surface_files` beside the repository, in `third_party`.
+//! The files are not part of this project: they are in `third_party` of the folder that the environment variable
+//! `ASPERITY_SURFACE_FILES` names.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use asperity_surfaces::io::ReadOptions;
 
@@ -81,24 +81,25 @@ const FILES: &[Reference] = &[
     },
 ];
 
-/// The folder of these files, if it is there.
-fn folder() -> Option<PathBuf> {
-    let folder = match std::env::var_os("ASPERITY_SURFACE_FILES") {
-        Some(folder) => PathBuf::from(folder),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/reference/surface_files"),
+/// A file of these; none without the variable. Where it is set, all of them have to be there.
+pub(super) fn path(name: &str) -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os("ASPERITY_SURFACE_FILES") else {
+        println!("skipped: ASPERITY_SURFACE_FILES names no folder with {name}");
+        return None;
     };
-    Some(folder.join("third_party")).filter(|folder| folder.is_dir())
+    let path = PathBuf::from(folder).join("third_party").join(name);
+    assert!(path.is_file(), "{} is not there", path.display());
+    Some(path)
 }
 
 #[test]
 fn other_readers_find_the_same() {
-    let Some(folder) = folder() else {
-        eprintln!("skipped: ASPERITY_SURFACE_FILES names no folder with other people's files");
-        return;
-    };
     for reference in FILES {
         let name = reference.file;
-        let found = ReadOptions::new().read(folder.join(name)).unwrap();
+        let Some(path) = path(name) else {
+            return;
+        };
+        let found = ReadOptions::new().read(path).unwrap();
         assert_eq!(found.heights.shape(), reference.shape, "{name}");
         assert_eq!(found.missing, reference.missing, "{name}");
         let (nx, ny) = reference.shape;

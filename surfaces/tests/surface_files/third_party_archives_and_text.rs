@@ -2,26 +2,12 @@
 //! x3pio 2.0.0 and surfalize 0.19.2 find in them. The files are not part of this repository; a test without them says
 //! so.
 
-use std::path::{Path, PathBuf};
-
 use asperity_surfaces::io::{LengthUnit, MeasuredSurface, ReadOptions, channels};
 use asperity_surfaces::{Error, FileError};
 
-type TestResult = Result<(), Box<dyn std::error::Error>>;
+use super::third_party::path;
 
-/// A file of other people, if it is there.
-pub(super) fn path(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("ASPERITY_SURFACE_FILES").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/reference/surface_files"),
-        PathBuf::from,
-    );
-    let path = folder.join("third_party").join(name);
-    if path.is_file() {
-        return Some(path);
-    }
-    println!("skipped: {} is not there", path.display());
-    None
-}
+type TestResult = Result<(), Box<dyn std::error::Error>>;
 
 /// What other readers find in a file; lengths in metres.
 struct Found<'a> {

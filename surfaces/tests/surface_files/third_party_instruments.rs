@@ -6,7 +6,7 @@ use std::fs;
 use asperity_surfaces::io::{LengthUnit, MeasuredSurface, ReadOptions, channels};
 use serde_json::Value;
 
-use super::third_party_archives_and_text::path;
+use super::third_party::path;
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
