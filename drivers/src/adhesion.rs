@@ -96,8 +96,9 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let range = path.law().range();
     let deep = sample.surface.peak_to_valley().max(range);
     // On branches that grow as the approach does: mean planes may go back in a jump.
-    let is_free = sample.class == Class::Free;
-    let may_cycle = sample.class == Class::Spectral && !is_distinct(sample);
+    let is_free = table.gauge().is_none();
+    let layer = matches!(sample.class, Class::Soft | Class::SoftPeriodic);
+    let may_cycle = (sample.class == Class::Spectral || layer) && !is_distinct(sample);
     let mut trial = Trial {
         exact: Equilibria::of(path.problem(), path.law()),
         gauge: table.gauge().unwrap_or_default(),
@@ -113,8 +114,8 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let turns: Vec<f64> = (0..5).map(|_| draw.between(-0.97 * range, deep)).collect();
     match trial.walk(&turns, is_free) {
         Ok(()) => Ok(trial.tally),
-        // Of long cells the matrix has neighbours that are nearly one. On the spectral half-space a pull may open a gap, and
-        // nodes of one height may take turns without end.
+        // Of long cells the matrix has neighbours that are nearly one. On the spectral half-space a pull may open a gap, on
+        // a thin layer neighbours hardly know of each other: nodes of one height may take turns without end.
         Err(Stop::Error(_)) if is_long || may_cycle => Ok(Tally::refusal()),
         Err(Stop::Error(error)) => Err(Violation::new(format!("the path broke off: {error}"))),
         Err(Stop::Violation(violation)) => Err(violation),

@@ -1,6 +1,9 @@
 //! Half-spaces and other bodies: those of the library, and tables of coefficients that promise nothing.
 
-use asperity::kernel::{KernelTable, MeanDisplacement};
+use asperity::kernel::{
+    Base, KernelTable, Layer, Layered, LayeredBody, MeanDisplacement, SemiPeriodicBoussinesq,
+};
+use asperity::surface::Axis;
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral,
 };
@@ -25,6 +28,16 @@ pub(crate) enum Class {
     Arbitrary,
     /// Coefficients drawn at random, which may be indefinite.
     Random,
+    /// Half-spaces that repeat along one side.
+    AlongX,
+    AlongY,
+    /// Layers whose contact only grows: none is stiffer than what it lies on.
+    Soft,
+    SoftPeriodic,
+    /// Any layers, on which contact may lose nodes.
+    Layers,
+    LayersPeriodic,
+    LayersSpectral,
 }
 
 /// Kernels beside that of a free half-space.
@@ -38,6 +51,11 @@ pub(crate) const ALL: &[Class] = &[
     Class::Physical,
     Class::Arbitrary,
     Class::Random,
+    Class::AlongX,
+    Class::AlongY,
+    Class::Layers,
+    Class::LayersPeriodic,
+    Class::LayersSpectral,
 ];
 
 /// Those whose matrices are positive definite by theory, on any grid that they accept.
@@ -50,11 +68,28 @@ pub(crate) const DEFINITE: &[Class] = &[
     Class::Exponential,
     Class::Physical,
     Class::Arbitrary,
+    Class::AlongX,
+    Class::AlongY,
+    Class::Layers,
+    Class::LayersPeriodic,
+    Class::LayersSpectral,
 ];
 
 /// Those that promise that contact only grows.
-pub(crate) const GROWING: &[Class] =
-    &[Class::Periodic, Class::PeriodicInGauge, Class::Spectral, Class::SpectralInGauge];
+pub(crate) const GROWING: &[Class] = &[
+    Class::Periodic,
+    Class::PeriodicInGauge,
+    Class::Spectral,
+    Class::SpectralInGauge,
+    Class::AlongX,
+    Class::AlongY,
+    Class::Soft,
+    Class::SoftPeriodic,
+];
+
+/// Cells up to so many times as long as wide on a half-space that repeats along one side: what is computed across is as
+/// wide as the grid and five periods.
+pub(crate) const LONGEST_ALONG: f64 = 10.0;
 
 /// A kernel, or why there is none.
 pub(crate) struct Made {
@@ -64,7 +99,10 @@ pub(crate) struct Made {
 
 /// A kernel on `grid` with the modulus `e_star`, of a class that is drawn: a free half-space or one of these.
 pub(crate) fn kernel(draw: &mut Draw<'_>, grid: Grid, e_star: f64, others: &[Class]) -> Made {
-    let class = draw.one_of(Class::Free, others);
+    let class = match draw.one_of(Class::Free, others) {
+        Class::AlongX | Class::AlongY if grid.cell_aspect() > LONGEST_ALONG => Class::Periodic,
+        class => class,
+    };
     Made { class, kernel: make(draw, grid, e_star, class) }
 }
 
@@ -132,5 +170,52 @@ pub(crate) fn make(
             };
             Box::new(KernelTable::from_fn(grid, Boundary::Free, unknown, coefficient)?)
         }
+        Class::AlongX => Box::new(SemiPeriodicBoussinesq::new(grid, e_star, Axis::X)?),
+        Class::AlongY => Box::new(SemiPeriodicBoussinesq::new(grid, e_star, Axis::Y)?),
+        Class::Soft => Box::new(Layered::free(grid, soft(draw, &grid, e_star)?)?),
+        Class::SoftPeriodic => Box::new(Layered::periodic(grid, soft(draw, &grid, e_star)?)?),
+        Class::Layers => Box::new(Layered::free(grid, layers(draw, &grid, e_star)?)?),
+        Class::LayersPeriodic => Box::new(Layered::periodic(grid, layers(draw, &grid, e_star)?)?),
+        Class::LayersSpectral => Box::new(Layered::spectral(grid, layers(draw, &grid, e_star)?)?),
     })
+}
+
+/// From a tenth of a cell to a hundred of them.
+fn layer(draw: &mut Draw<'_>, grid: &Grid, youngs_modulus: f64) -> Layer {
+    let thickness = grid.cell_area().sqrt() * draw.decades(-1.0, 2.0);
+    Layer { youngs_modulus, poissons_ratio: draw.between(0.0, 0.45), thickness }
+}
+
+/// A layer on a rigid base or on a body that is stiffer.
+fn soft(draw: &mut Draw<'_>, grid: &Grid, youngs_modulus: f64) -> Result<LayeredBody, Error> {
+    let layer = layer(draw, grid, youngs_modulus);
+    let base = match draw.once_in(2) {
+        true => Base::Rigid,
+        false => Base::HalfSpace {
+            youngs_modulus: youngs_modulus * draw.decades(0.0, 3.0),
+            poissons_ratio: layer.poissons_ratio,
+        },
+    };
+    LayeredBody::new(&[layer], base)
+}
+
+/// One layer or two on a rigid base or any other body, sometimes against an elastic one.
+fn layers(draw: &mut Draw<'_>, grid: &Grid, youngs_modulus: f64) -> Result<LayeredBody, Error> {
+    let mut layers = vec![layer(draw, grid, youngs_modulus)];
+    if draw.once_in(2) {
+        let youngs_modulus = youngs_modulus * draw.decades(-2.0, 2.0);
+        layers.push(layer(draw, grid, youngs_modulus));
+    }
+    let base = match draw.once_in(2) {
+        true => Base::Rigid,
+        false => Base::HalfSpace {
+            youngs_modulus: youngs_modulus * draw.decades(-3.0, 3.0),
+            poissons_ratio: draw.between(0.0, 0.5),
+        },
+    };
+    let body = LayeredBody::new(&layers, base)?;
+    match draw.once_in(3) {
+        true => body.against(youngs_modulus * draw.decades(-2.0, 2.0)),
+        false => Ok(body),
+    }
 }

@@ -146,9 +146,20 @@ fn half_space(
     let dx = draw.decades(-8.0, 0.0);
     let (height, modulus) = (draw.decades(-10.0, -2.0), draw.decades(0.0, 12.0));
     let surface = HeightMap::new(surfaces::heights(draw, (nx, ny)) * height)?;
-    let class = draw.one_of(Class::Free, &[Class::Periodic, Class::Spectral]);
+    let others = [
+        Class::Periodic,
+        Class::Spectral,
+        Class::AlongX,
+        Class::AlongY,
+        Class::Soft,
+        Class::SoftPeriodic,
+    ];
+    let class = draw.one_of(Class::Free, &others);
     let aspect = match class {
-        Class::Free => aspect,
+        Class::Free | Class::Soft => aspect,
+        Class::AlongX | Class::AlongY => {
+            aspect.clamp(1.0 / kernels::LONGEST_ALONG, kernels::LONGEST_ALONG)
+        }
         _ => aspect.clamp(1.0 / longest, longest),
     };
     let grid = Grid::new(nx, ny, dx, dx * aspect)?;
@@ -181,9 +192,10 @@ fn grid(draw: &mut Draw<'_>) -> Result<Grid, Violation> {
 fn judge(error: &Error, grid: &Grid, class: Class) -> Verdict {
     let aspect = grid.cell_aspect();
     let deserved = match (error, class) {
-        (Error::OutOfRange { .. }, Class::Periodic | Class::PeriodicInGauge) => {
-            aspect > PeriodicBoussinesq::MAX_ASPECT
-        }
+        (
+            Error::OutOfRange { .. },
+            Class::Periodic | Class::PeriodicInGauge | Class::SoftPeriodic | Class::LayersPeriodic,
+        ) => aspect > PeriodicBoussinesq::MAX_ASPECT,
         // Nothing is known of a single node whose mean displacement is arbitrary.
         (Error::NotPositiveDefinite { .. }, Class::Arbitrary) => grid.nodes() == 1,
         _ => false,

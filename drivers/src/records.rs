@@ -117,7 +117,19 @@ fn bring_back(
         tolerance: Some(ITERATED),
         ..Circumstances::of(&dense, sample.kernel.contact_growth())
     };
-    let ours = matches!(sample.class, Class::Free | Class::Periodic | Class::Spectral);
+    let ours = matches!(
+        sample.class,
+        Class::Free
+            | Class::Periodic
+            | Class::Spectral
+            | Class::AlongX
+            | Class::AlongY
+            | Class::Soft
+            | Class::SoftPeriodic
+            | Class::Layers
+            | Class::LayersPeriodic
+            | Class::LayersSpectral
+    );
     // Gauges that are both exchanged for another one are one kernel to compute with.
     let may_be = matches!(sample.class, Class::PeriodicInGauge | Class::SpectralInGauge);
     ensure!(

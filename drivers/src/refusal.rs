@@ -48,9 +48,10 @@ impl Circumstances {
                 self.error > 1e-3
             }
             // The signs that are promised are looked at to 1e-9 or better. Where nothing is promised and the matrix is not
-            // positive definite, nodes that touch together may be pulled whatever follows.
+            // positive definite, or so nearly so that rounding is more than that, nodes that touch together may be pulled
+            // whatever follows.
             Error::NotMonotone { .. } => match self.growth {
-                ContactGrowth::Unknown => self.error.is_infinite() && self.on_the_edge > 1,
+                ContactGrowth::Unknown => self.error > 1e-8 && self.on_the_edge > 1,
                 _ => self.error > 1e-6,
             },
             // Contact is closed to 1e-10 of the lengths at ends of windows. Where nodes yield in them, up to 1.6 times

@@ -28,10 +28,18 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Runs a driver on as many random inputs as it is told to, up to so many bytes each.
-fn drive(name: &str, driver: Driver, cases: u64, most_bytes: usize) -> Result<Tally, Violation> {
+/// Runs a driver on as many random inputs as it is told to, up to so many bytes each. At least this share of the cases
+/// has to come to a comparison, but for four standard deviations of chance: a driver that refuses its own inputs tests
+/// nothing.
+fn drive(
+    name: &str,
+    driver: Driver,
+    cases: u64,
+    most_bytes: usize,
+    least_share: f64,
+) -> Result<(), Violation> {
     if let Ok(text) = env::var("ASPERITY_DRIVER_BYTES") {
-        return case(driver, &from_hex(&text)?);
+        return case(driver, &from_hex(&text)?).map(|_| ());
     }
     let seed = number("ASPERITY_DRIVER_SEED")?.unwrap_or(SEED);
     let seconds = number("ASPERITY_DRIVER_SECONDS")?;
@@ -43,79 +51,83 @@ fn drive(name: &str, driver: Driver, cases: u64, most_bytes: usize) -> Result<Ta
     };
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut tally = Tally::default();
-    let mut k = 0;
+    let (mut k, mut compared) = (0, 0);
     while goes_on(k) {
         let length = random.next_u64() as usize % (most_bytes + 1);
         let mut bytes = vec![0; length];
         random.fill_bytes(&mut bytes);
-        tally += case(driver, &bytes).map_err(|violation| {
+        let of_case = case(driver, &bytes).map_err(|violation| {
             let bytes = hex(&bytes);
             Violation::new(format!(
                 "{violation}\n{name}, seed {seed}, case {k}: ASPERITY_DRIVER_BYTES={bytes}"
             ))
         })?;
+        // One case may compare many states, or neither compare nor refuse anything.
+        compared += u64::from(of_case.checked > 0);
+        tally += of_case;
         k += 1;
     }
-    println!("{name}: {k} cases of seed {seed}, {tally:?}");
-    Ok(tally)
+    println!("{name}: {k} cases of seed {seed}, {compared} of them compared, {tally:?}");
+    let expected = least_share * k as f64;
+    if (compared as f64) < expected - 4.0 * (expected * (1.0 - least_share)).sqrt() {
+        return Err(Violation::new(format!(
+            "hardly anything was compared: {compared} of {k} cases, {tally:?}"
+        )));
+    }
+    Ok(())
 }
 
-/// `Ok` if most of the cases came to be compared with something: a driver that refuses its own inputs tests nothing.
-fn compared(tally: Tally) -> Result<(), Violation> {
-    if env::var("ASPERITY_DRIVER_BYTES").is_ok() || tally.checked > tally.refused / 20 {
-        return Ok(());
-    }
-    Err(Violation::new(format!("hardly anything was compared: {tally:?}")))
-}
+// Least shares are 0.8 of what seed 2020 came to: nearly all cases; of parsers 0.12, as few hostile files can be read,
+// of records 0.6, and of slip 0.81.
 
 #[test]
 fn paths_are_right() -> Result<(), Violation> {
-    compared(drive("paths_are_right", asperity_drivers::paths, 150, 400)?)
+    drive("paths_are_right", asperity_drivers::paths, 150, 400, 0.8)
 }
 
 #[test]
 fn yielding_is_right() -> Result<(), Violation> {
-    compared(drive("yielding_is_right", asperity_drivers::yielding, 100, 400)?)
+    drive("yielding_is_right", asperity_drivers::yielding, 100, 400, 0.75)
 }
 
 #[test]
 fn adhesion_is_right() -> Result<(), Violation> {
-    compared(drive("adhesion_is_right", asperity_drivers::adhesion, 150, 400)?)
+    drive("adhesion_is_right", asperity_drivers::adhesion, 150, 400, 0.8)
 }
 
 #[test]
 fn large_contacts_are_right() -> Result<(), Violation> {
-    compared(drive("large_contacts_are_right", asperity_drivers::large_contacts, 40, 400)?)
+    drive("large_contacts_are_right", asperity_drivers::large_contacts, 40, 400, 0.75)
 }
 
 #[test]
 fn fixed_loads_are_right() -> Result<(), Violation> {
-    compared(drive("fixed_loads_are_right", asperity_drivers::fixed_loads, 100, 400)?)
+    drive("fixed_loads_are_right", asperity_drivers::fixed_loads, 100, 400, 0.75)
 }
 
 #[test]
 fn large_loads_are_right() -> Result<(), Violation> {
-    compared(drive("large_loads_are_right", asperity_drivers::large_loads, 30, 400)?)
+    drive("large_loads_are_right", asperity_drivers::large_loads, 30, 400, 0.8)
 }
 
 #[test]
 fn parsers_are_right() -> Result<(), Violation> {
-    compared(drive("parsers_are_right", asperity_drivers::parsers, 4000, 400)?)
+    drive("parsers_are_right", asperity_drivers::parsers, 4000, 400, 0.09)
 }
 
 #[test]
 fn records_are_right() -> Result<(), Violation> {
-    compared(drive("records_are_right", asperity_drivers::records, 100, 400)?)
+    drive("records_are_right", asperity_drivers::records, 100, 400, 0.45)
 }
 
 #[test]
 fn creep_is_right() -> Result<(), Violation> {
-    compared(drive("creep_is_right", asperity_drivers::creep, 200, 400)?)
+    drive("creep_is_right", asperity_drivers::creep, 200, 400, 0.75)
 }
 
 #[test]
 fn slip_is_right() -> Result<(), Violation> {
-    compared(drive("slip_is_right", asperity_drivers::slip, 400, 400)?)
+    drive("slip_is_right", asperity_drivers::slip, 400, 400, 0.65)
 }
 
 /// Cases that an earlier version failed. As the drivers change what they make of their bytes, so do these.
