@@ -50,7 +50,8 @@ impl AdhesiveBranch {
 
     /// The greatest pull \[N\], the least load with its sign changed; 0 where nothing pulls. Of unloading it is the
     /// force that pulls the surfaces apart, under a dead load too, whatever the compliance of the machine; of loading
-    /// the one with which they pull each other in.
+    /// the one with which they pull each other in. A branch that has turned around begins with its first event: the state
+    /// where it turned is the last of the branch before, and may be pulled more.
     #[must_use]
     pub fn pull_off(&self) -> f64 {
         let least = self.states.iter().map(|state| state.contact.load).fold(0.0, f64::min);

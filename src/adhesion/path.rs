@@ -403,7 +403,7 @@ impl AdhesivePath {
         let approach = gauge.0.reported_approach(moment.approach, load);
         // Per unit of approach, whichever way that goes; and 0 rather than −0.
         let stiffness = area * pressure_rate * self.direction.sign() + 0.0;
-        let interfacial = -area * pressure_rate / (gap_rate / nodes);
+        let interfacial = -area * pressure_rate / (gap_rate / nodes) + 0.0;
         let contact = ContactState {
             contact_stiffness: Some(stiffness).filter(|_| has_distant_point),
             interfacial_stiffness: Some(if is_full { f64::INFINITY } else { interfacial }),
@@ -547,7 +547,17 @@ impl AdhesivePath {
         self.tied.add(changes.len().max(1), has_moved, place)?;
         let before = self.trace.changes.len();
         self.trace.changes.extend(changes);
-        for (event, node, moment, changes) in &moments {
+        // Behind the beginning of a jump this one is the first event again.
+        let again = self.last.filter(|last| {
+            last.event == AdhesiveEvent::JumpStart
+                && last.direction == self.direction
+                && self.jump.is_none()
+        });
+        let again = again.map(|last| self.grid().index(last.node.0, last.node.1));
+        for (k, (event, node, moment, changes)) in moments.iter().enumerate() {
+            if k == 0 && *event == AdhesiveEvent::JumpStart && again == Some(*node) {
+                continue;
+            }
             self.push(*event, *node, moment, before + changes);
         }
         self.front = front;

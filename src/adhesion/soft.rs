@@ -1,12 +1,12 @@
 //! The nodes on the slope of the law, with a factor of their matrix.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::Llt;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::prelude::Solve;
-use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::parallel;
 use crate::updater::Schur;
@@ -19,7 +19,8 @@ const WIDTH: usize = 144;
 pub(super) struct Soft {
     /// Where they are among the watched nodes, ascending.
     places: Vec<usize>,
-    factor: Llt<f64>,
+    /// Below the diagonal and on it.
+    factor: Mat<f64>,
     /// The least pivot of M over 1/k, 1 at most.
     pub(super) least_pivot: f64,
 }
@@ -44,10 +45,15 @@ impl Soft {
             }
             matrix[(j, j)] += compliance;
         }
-        let factor = matrix.llt(Side::Lower).ok()?;
-        let pivots = (0..size).map(|i| factor.L()[(i, i)].powi(2) / compliance);
+        // Sequential, whatever a program has set for all of its threads.
+        let scratch = cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default());
+        let mut memory = MemBuffer::new(scratch);
+        let stack = MemStack::new(&mut memory);
+        let (none, params) = (Default::default(), Default::default());
+        cholesky_in_place(matrix.as_mut(), none, Par::Seq, stack, params).ok()?;
+        let pivots = (0..size).map(|i| matrix[(i, i)].powi(2) / compliance);
         let least_pivot = pivots.fold(1.0, f64::min);
-        Some(Self { places, factor, least_pivot })
+        Some(Self { places, factor: matrix, least_pivot })
     }
 
     /// The same nodes in the same order at other places.
@@ -67,7 +73,9 @@ impl Soft {
     /// M⁻¹ times two columns.
     pub(super) fn solve(&self, right: [Vec<f64>; 2]) -> [Vec<f64>; 2] {
         let mut right = Mat::from_fn(self.len(), 2, |i, k| right[k][i]);
-        self.factor.solve_in_place(&mut right);
+        let lower = self.factor.as_ref();
+        solve_lower_triangular_in_place(lower, right.as_mut(), Par::Seq);
+        solve_upper_triangular_in_place(lower.transpose(), right.as_mut(), Par::Seq);
         [0, 1].map(|k| right.col(k).iter().copied().collect())
     }
 
@@ -78,7 +86,7 @@ impl Soft {
             let all = MatMut::from_row_major_slice_mut(&mut values, size, width);
             let mut parts = parts(all);
             parallel::for_each(size * size * width / 2, &mut parts, |part| {
-                solve_lower_triangular_in_place(self.factor.L(), part.as_mut(), Par::Seq);
+                solve_lower_triangular_in_place(self.factor.as_ref(), part.as_mut(), Par::Seq);
             });
         }
         Half { values, width }
@@ -94,7 +102,7 @@ impl Soft {
         let stored = MatRef::from_row_major_slice(&half.values, size, half.width);
         let stored = stored.subcols(0, columns);
         let factors = MatRef::from_column_major_slice(factors, columns, lists);
-        let upper = self.factor.L().transpose();
+        let upper = self.factor.transpose();
         let work = size * lists * (columns + size / 2);
         let mut parts: Vec<_> = parts(combined.as_mut()).into_iter().enumerate().collect();
         parallel::for_each(work, &mut parts, |(part, target)| {

@@ -26,6 +26,7 @@ pub(super) struct Measured {
     pub(super) stiffness: f64,
     /// Loads are differences of forces as large as this, and approaches and gaps of lengths.
     pub(super) units: [f64; 2],
+    pub(super) contact_nodes: usize,
     /// Whether all nodes touch: mean planes of a periodic half-space do not approach any more then.
     pub(super) is_full: bool,
 }
@@ -101,7 +102,7 @@ impl Targets {
     ) -> Result<(), Error> {
         let sign = direction.sign();
         for target in &self.targets {
-            let (quantity, value, present, way) = match *target {
+            let (quantity, value, present, sign) = match *target {
                 ContactTarget::Load(load) => ("load", load, state.load, sign),
                 ContactTarget::Approach(approach) => ("approach", approach, state.approach, sign),
                 ContactTarget::MeanGap(gap) => ("mean gap", gap, state.mean_gap, -sign),
@@ -110,10 +111,17 @@ impl Targets {
                     ("contact area fraction", fraction, state.contact_area_fraction, sign)
                 }
             };
+            let way = match (target, self.nodes) {
+                // In nodes: a fraction need not be a whole number of them.
+                (ContactTarget::AreaFraction(_), Some(nodes)) => {
+                    nodes as f64 - state.contact_nodes as f64
+                }
+                _ => value - present,
+            };
             let is_apart = state.contact_nodes == 0 && state.load == 0.0;
             let pulls = sticks && is_apart && direction == Direction::Loading;
             let rounding = NEAR * value.abs().max(present.abs());
-            if way * (value - present) < -rounding && !(quantity == "load" && pulls) {
+            if sign * way < -rounding && !(quantity == "load" && pulls) {
                 return Err(AdhesionError::Behind { quantity, value, present }.into());
             }
         }
@@ -123,12 +131,19 @@ impl Targets {
     /// When the first is reached that is not an area; infinity if none is as long as nothing happens.
     pub(super) fn time(&self, gauge: Gauge, measured: &Measured, direction: Direction) -> f64 {
         let sign = direction.sign();
-        let Measured { approach, load, mean_gap, stiffness, units: [force, length], is_full } =
+        let Measured { approach, load, mean_gap, stiffness, units: [force, length], .. } =
             *measured;
+        let Measured { contact_nodes, is_full, .. } = *measured;
         let ([load, load_rate], [gap, gap_rate]) = (load, mean_gap);
         let stands = is_full && gauge.displacement(1.0) > 0.0;
         let times = self.targets.iter().map(|target| {
             let (left, near, rate, unit) = match *target {
+                // Surfaces that are drawn together bear none when some nodes press as much as others pull.
+                ContactTarget::Load(0.0)
+                    if contact_nodes == 0 && direction == Direction::Loading =>
+                {
+                    return f64::INFINITY;
+                }
                 // The load may rise or fall on either branch.
                 ContactTarget::Load(to) => {
                     let left = to - load;

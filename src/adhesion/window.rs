@@ -10,6 +10,7 @@ use super::target::{Measured, Targets};
 use crate::contact::ContactState;
 use crate::error::AdhesionError;
 use crate::kernel::Gauge;
+use crate::tied_events::TiedEvents;
 use crate::{Error, Grid};
 
 /// By how much a pressure may be beyond its law at the end of a window, relative to the stress, and what gaps that
@@ -195,6 +196,9 @@ struct Play<'a> {
     jump: Option<usize>,
     is_at_limit: bool,
     has_moved: bool,
+    /// Whether the last event came at once, but for rounding.
+    stands: bool,
+    tied: TiedEvents,
     /// Whether the next event needs soft nodes that are not watched.
     lacks_others: bool,
     /// How often it was played again with fewer events.
@@ -297,6 +301,8 @@ impl<'a> Play<'a> {
             jump: None,
             is_at_limit: false,
             has_moved: false,
+            stands: true,
+            tied: TiedEvents::default(),
             lacks_others: false,
             shortened: 0,
         })
@@ -352,7 +358,7 @@ impl<'a> Play<'a> {
         let begun = self.board.clone();
         let (mut most, mut until) = (most, f64::INFINITY);
         loop {
-            self.run(most, until);
+            self.run(most, until)?;
             // A window that ends between events of the instant at which it begins would leave the rest of them late,
             // and near an instability that grows.
             if self.lacks_others && (self.events == 0 || !self.has_moved) {
@@ -410,6 +416,7 @@ impl<'a> Play<'a> {
         self.given.clear();
         (self.time, self.events, self.jump) = (0.0, 0, None);
         (self.is_at_limit, self.has_moved, self.lacks_others) = (false, false, false);
+        self.tied = TiedEvents::default();
         self.shortened += 1;
     }
 
@@ -427,12 +434,20 @@ impl<'a> Play<'a> {
     }
 
     /// Plays so many events at most, but for the first one until a time.
-    fn run(&mut self, most: usize, until: f64) {
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Cycling`] for events of one instant without end.
+    fn run(&mut self, most: usize, until: f64) -> Result<(), Error> {
         self.end = self.horizon.min(until);
         loop {
+            let events = self.events;
+            self.stands = true;
             let goes_on = if self.board.carries() { self.carry(most) } else { self.step(most) };
+            let place = (self.approach, self.grid.nodes());
+            self.tied.add(self.events - events, !self.stands, place)?;
             if !goes_on || !self.turn(most) {
-                return;
+                return Ok(());
             }
         }
     }
@@ -554,6 +569,7 @@ impl<'a> Play<'a> {
             mean_gap: [gaps, gap_rate].map(|sum| sum / self.grid.nodes() as f64),
             stiffness: self.area() * self.board.law().slope(),
             units: [pull + load[0].abs(), self.length],
+            contact_nodes: self.board.contact_nodes,
             is_full: self.board.contact_nodes == self.grid.nodes(),
         };
         targets.time(gauge, &measured, direction)
@@ -607,6 +623,8 @@ impl<'a> Play<'a> {
         let [after, _] = self.board.sums;
         self.has_moved |= step > 0.0;
         let carries = self.board.carries();
+        let unit = if carries { self.board.law().stress() } else { self.length };
+        self.stands &= step <= f64::EPSILON * unit;
         if carries == self.is_in_jump {
             self.time += step;
         }

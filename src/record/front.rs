@@ -96,9 +96,9 @@ mod tests {
     }
 
     fn kernels(grid: Grid) -> Result<Vec<Box<dyn InfluenceKernel>>, Error> {
-        let body = |young: f64, thickness: f64, base: f64| {
-            let base = Base::HalfSpace { young: base, poisson: 0.3 };
-            LayeredBody::new(&[Layer { young, poisson: 0.3, thickness }], base)
+        let body = |youngs_modulus: f64, thickness: f64, base: f64| {
+            let base = Base::HalfSpace { youngs_modulus: base, poissons_ratio: 0.3 };
+            LayeredBody::new(&[Layer { youngs_modulus, poissons_ratio: 0.3, thickness }], base)
         };
         Ok(vec![
             Box::new(Boussinesq::new(grid, 2.0)?),

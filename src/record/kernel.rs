@@ -69,6 +69,20 @@ impl KernelRecord {
         }
     }
 
+    /// A kernel in the gauge of this one, if that was [another](crate::PeriodicBoussinesq::with_gauge) than the kernel
+    /// has by itself; it must be the same otherwise.
+    pub(super) fn in_gauge(&self, table: KernelTable) -> KernelTable {
+        let found = Self::of(&table).coefficients;
+        match (table.gauge(), self.coefficients.first(), found.first()) {
+            (Some(gauge), Some(&asked), Some(&own))
+                if (asked - own).abs() > SAME_KERNEL * asked.abs().max(own.abs()) =>
+            {
+                table.in_gauge(gauge + (asked - own))
+            }
+            _ => table,
+        }
+    }
+
     /// The kernel, made again, if it is still the same.
     pub(super) fn make(&self, grid: Grid) -> Result<KernelTable, Error> {
         let table = match &self.origin {

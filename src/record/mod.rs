@@ -154,7 +154,10 @@ impl LoadingRecord {
         let kernel = KernelRecord::of(problem.table());
         let hardness = path.hardness_map().map(|map| RecordedHardness::of(&map));
         let settings = Settings { rule: path.rule(), targets: path.targets(), hardness };
-        Self::from_parts(grid, heights, kernel, settings, history, path.end())
+        // Of some of the states it has not ended.
+        let is_whole = events == path.state().map(|state| state.step);
+        let end = path.end().filter(|_| is_whole);
+        Self::from_parts(grid, heights, kernel, settings, history, end)
     }
 
     /// A record made of what it consists of: from a file, for example.
@@ -209,7 +212,9 @@ impl LoadingRecord {
     pub fn with_bodies(mut self, bodies: &[(f64, f64)]) -> Result<Self, Error> {
         let e_star = match *bodies {
             [] => None,
-            [(young, poisson)] => Some(plane_strain_modulus(young, poisson)?),
+            [(youngs_modulus, poissons_ratio)] => {
+                Some(plane_strain_modulus(youngs_modulus, poissons_ratio)?)
+            }
             [first, second] => Some(composite_modulus(first, second)?),
             _ => return Err(Error::LengthMismatch { expected: 2, found: bodies.len() }),
         };
@@ -248,14 +253,14 @@ impl LoadingRecord {
         &self.kernel
     }
 
-    /// The kernel, made again.
+    /// The kernel, made again, in the gauge in which the path was followed.
     ///
     /// # Errors
     ///
     /// [`Error::ForeignKernel`] if it is not one of this crate, and [`Error::WrongKernel`] if this version makes
     /// another one of it.
     pub fn make_kernel(&self) -> Result<KernelTable, Error> {
-        self.kernel.make(self.grid)
+        Ok(self.kernel.in_gauge(self.kernel.make(self.grid)?))
     }
 
     /// The settings of the path.

@@ -5,6 +5,7 @@ mod closed_forms;
 mod equilibria;
 mod met_exactly;
 mod reference_branches;
+mod resumed;
 mod special;
 mod targets;
 mod walks;

@@ -1,13 +1,17 @@
 //! What holds of every path: energies balance, nothing is gained, closed minor loops restore the state, and every state
 //! is on its law.
 
+use std::cell::Cell;
+
 use asperity::adhesion::{Adhesion, AdhesiveFields, AdhesivePath, AdhesiveState, NodeState};
-use asperity::surface::{Amplitude, SelfAffine};
+use asperity::surface::{Amplitude, Axis, SelfAffine};
 use asperity::{
-    Boussinesq, ContactTarget, Grid, InfluenceKernel, KernelTable, PeriodicBoussinesq, Spectral,
+    Boussinesq, ContactGrowth, ContactTarget, Grid, InfluenceKernel, KernelTable,
+    PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
 use nalgebra::DVector;
 use proptest::prelude::*;
+use proptest::test_runner::{RngSeed, TestRunner};
 
 /// Law, gaps, pressures and energies of a state, from its pressures and nothing else.
 fn check_state(path: &AdhesivePath, kernel: &KernelTable, state: &AdhesiveState) -> AdhesiveFields {
@@ -91,80 +95,116 @@ fn go(path: &mut AdhesivePath, to: f64) -> AdhesiveState {
     path.state().unwrap()
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(16) })]
+/// A random walk: surface, law, where it turns, and how many nodes are watched.
+#[derive(Debug)]
+struct Walk {
+    seed: u64,
+    work: f64,
+    resolution: f64,
+    flat: bool,
+    turns: Vec<f64>,
+    window: usize,
+}
 
-    #[test]
-    fn closed_loops_restore_the_state(
-        seed in 0..10_000_u64,
-        which in 0..3_usize,
-        work in 1e-5..3e-3_f64,
-        resolution in 0.3..0.75_f64,
-        flat in prop::bool::ANY,
-        turns in prop::collection::vec(0.0..1.0_f64, 5),
-        window in 1..40_usize,
-    ) {
-        let grid = Grid::new(14, 10, 1.0 / 14.0, 0.1).unwrap();
-        let kernels: [Box<dyn InfluenceKernel>; 3] = [
-            Box::new(Boussinesq::new(grid, 1.0).unwrap()),
-            Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()),
-            Box::new(Spectral::new(grid, 1.0).unwrap()),
-        ];
-        let kernel: &dyn InfluenceKernel = kernels[which].as_ref();
-        let surface = SelfAffine::new(0.8, 0.5, 0.3, Amplitude::RmsHeight(0.02), seed).unwrap();
-        let unit = Adhesion::work(1e-9).range(1.0).on(kernel).unwrap().resolution();
-        // A triangle of this slope, or a trapezoid of it.
-        let range = (work * unit / (1e-9 * resolution)).sqrt();
-        let law = if flat {
-            // h₁ is a third of h₂: w = σ₀ (4/3) h₂ / 2, k = σ₀ / ((2/3) h₂).
-            let range = range / 2.0_f64.sqrt();
-            Adhesion::maugis(work, 1.5 * work / range).range(range)
-        } else {
-            Adhesion::work(work).range(range)
+fn walks() -> impl Strategy<Value = Walk> {
+    let law = (1e-5..3e-3_f64, 0.3..0.75_f64, prop::bool::ANY);
+    (0..10_000_u64, law, prop::collection::vec(0.0..1.0_f64, 5), 1..40_usize).prop_map(
+        |(seed, (work, resolution, flat), turns, window)| Walk {
+            seed,
+            work,
+            resolution,
+            flat,
+            turns,
+            window,
+        },
+    )
+}
+
+/// The approach of a state in the gauge of the kernel, in which jumps stand still.
+fn in_gauge(path: &AdhesivePath, kernel: &KernelTable, state: &AdhesiveState) -> f64 {
+    let sum = state.contact.load / path.grid().cell_area();
+    state.contact.approach + kernel.gauge().unwrap_or_default() * sum
+}
+
+/// Walks up and down, with loops within loops; returns how many of three closed and were compared.
+fn loops(kernel: &dyn InfluenceKernel, walk: Walk) -> usize {
+    let Walk { seed, work, resolution, flat, turns: mut levels, window } = walk;
+    let surface = SelfAffine::new(0.8, 0.5, 0.3, Amplitude::RmsHeight(0.02), seed).unwrap();
+    let unit = Adhesion::work(1e-9).range(1.0).on(kernel).unwrap().resolution();
+    // A triangle of this slope, or a trapezoid of it.
+    let range = (work * unit / (1e-9 * resolution)).sqrt();
+    let law = if flat {
+        // h₁ is a third of h₂: w = σ₀ (4/3) h₂ / 2, k = σ₀ / ((2/3) h₂) = (9/4) w / h₂², that of a triangle 2w / h₂².
+        let range = range * 1.125_f64.sqrt();
+        Adhesion::maugis(work, 1.5 * work / range).range(range)
+    } else {
+        Adhesion::work(work).range(range)
+    };
+    let found = law.on(kernel).unwrap().resolution();
+    assert!((found / resolution - 1.0).abs() < 1e-9, "{found} {resolution}");
+    let table = KernelTable::new(kernel).unwrap();
+    let builder = AdhesivePath::builder(&surface, kernel, law).window_size(window);
+    let mut path = builder.build().unwrap();
+    let at = |part: f64| -range + part * (0.03 + range);
+    go(&mut path, at(1.0));
+    // Loops within loops: each closes at the approach where it began.
+    levels.sort_by(f64::total_cmp);
+    let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|k| at(levels[k]));
+    let turn = |path: &mut AdhesivePath, to: f64| {
+        let state = go(path, to);
+        (in_gauge(path, &table, &state), check_state(path, &table, &state))
+    };
+    let [start, top, inner, higher, _] = [a, e, b, d, c].map(|to| turn(&mut path, to));
+    let mut closed = 0;
+    for (to, began) in [(d, &higher), (b, &inner), (e, &top), (a, &start)] {
+        let (approach, fields) = turn(&mut path, to);
+        // Mean planes that have approached as far need not be at the same state: a jump may lie between. Once a loop
+        // has not closed the path is another one.
+        if kernel.contact_growth() != ContactGrowth::Convex || (approach - began.0).abs() > 1e-10 {
+            break;
+        }
+        assert_eq!(fields.nodes, began.1.nodes);
+        assert!((&fields.gap - &began.1.gap).amax() < 1e-10);
+        let error = (&fields.pressure - &began.1.pressure).amax();
+        assert!(error < 1e-8 * path.law().stress(), "{error:e}");
+        closed += 1;
+    }
+    path.unload().unwrap();
+    path.by_ref().for_each(|state| assert!(state.is_ok()));
+    let apart = path.state().unwrap();
+    assert_eq!((apart.contact.load, apart.contact.contact_nodes), (0.0, 0));
+    assert_eq!((apart.soft_nodes, apart.cohesive_nodes), (0, 0));
+    // What the closed path has cost is what jumps took.
+    let whole = path.law().work() * path.grid().nominal_area();
+    assert!((apart.work - apart.dissipated).abs() < 1e-12 * whole);
+    closed
+}
+
+/// On kernels on which gaps are convex; on the others energies balance all the same.
+#[test]
+fn closed_loops_restore_the_state() {
+    let grid = Grid::new(14, 10, 1.0 / 14.0, 0.1).unwrap();
+    let along = |axis| Box::new(SemiPeriodicBoussinesq::new(grid, 1.0, axis).unwrap());
+    let kernels: [(Box<dyn InfluenceKernel>, usize); 5] = [
+        (Box::new(Boussinesq::new(grid, 1.0).unwrap()), 1),
+        (Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()), 1),
+        (along(Axis::X), 1),
+        (along(Axis::Y), 1),
+        (Box::new(Spectral::new(grid, 1.0).unwrap()), 0),
+    ];
+    for (kernel, floor) in kernels {
+        let closed = Cell::new(0);
+        let config = ProptestConfig {
+            failure_persistence: None,
+            rng_seed: RngSeed::Fixed(1),
+            ..ProptestConfig::with_cases(6)
         };
-        let Ok(_) = law.on(kernel) else { return Ok(()) };
-        let table = KernelTable::new(kernel).unwrap();
-        let builder = AdhesivePath::builder(&surface, kernel, law).window_size(window);
-        let mut path = builder.build().unwrap();
-        let at = |part: f64| -range + part * (0.03 + range);
-        go(&mut path, at(1.0));
-        // Loops within loops: each closes at the approach where it began.
-        let mut levels = turns.clone();
-        levels.sort_by(f64::total_cmp);
-        let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|k| at(levels[k]));
-        let first = go(&mut path, a);
-        let start = check_state(&path, &table, &first);
-        let up = go(&mut path, e);
-        let top = check_state(&path, &table, &up);
-        let down = go(&mut path, b);
-        let inner = check_state(&path, &table, &down);
-        let higher = go(&mut path, d);
-        check_state(&path, &table, &higher);
-        let low = go(&mut path, c);
-        check_state(&path, &table, &low);
-        go(&mut path, d);
-        let again = go(&mut path, b);
-        let is_exact = which < 2;
-        if is_exact && table.gauge().is_none() {
-            let same = check_state(&path, &table, &again);
-            prop_assert_eq!(&same.nodes, &inner.nodes);
-            prop_assert!((&same.gap - &inner.gap).amax() < 1e-10);
-            let back = go(&mut path, e);
-            let same = check_state(&path, &table, &back);
-            prop_assert_eq!(&same.nodes, &top.nodes);
-            let back = go(&mut path, a);
-            let same = check_state(&path, &table, &back);
-            prop_assert_eq!(&same.nodes, &start.nodes);
-            prop_assert!((&same.pressure - &start.pressure).amax() < 1e-8 * path.law().stress());
-        }
-        path.unload().unwrap();
-        for state in path.by_ref() {
-            prop_assert!(state.is_ok());
-        }
-        let apart = path.state().unwrap();
-        prop_assert_eq!((apart.contact.load, apart.contact.contact_nodes), (0.0, 0));
-        prop_assert_eq!((apart.soft_nodes, apart.cohesive_nodes), (0, 0));
-        // What the closed path has cost is what jumps took.
-        prop_assert!((apart.work - apart.dissipated).abs() < 1e-12 * path.law().work() * grid.nominal_area());
+        let all = TestRunner::new(config).run(&walks(), |walk| {
+            closed.set(closed.get() + loops(&*kernel, walk));
+            Ok(())
+        });
+        println!("{:?} {}", kernel.origin(), closed.get());
+        assert!(all.is_ok(), "{:?}: {all:?}", kernel.origin());
+        assert!(closed.get() >= floor, "{:?}: {}", kernel.origin(), closed.get());
     }
 }

@@ -3,8 +3,13 @@
 use std::path::PathBuf;
 
 use asperity::adhesion::{Adhesion, AdhesiveBranch, AdhesivePath, AdhesiveState, NodeState};
+use asperity::kernel::{Layered, LayeredBody};
 use asperity::record::{AdhesiveRecord, LoadingRecord};
-use asperity::{Boussinesq, ContactTarget, Error, Grid};
+use asperity::surface::Axis;
+use asperity::{
+    Boussinesq, ContactTarget, Error, Grid, InfluenceKernel, PeriodicBoussinesq,
+    SemiPeriodicBoussinesq,
+};
 use asperity_testing::dense::{influence_matrix, initial_gap};
 use asperity_testing::surfaces::self_affine;
 use nalgebra::DVector;
@@ -18,16 +23,37 @@ pub(super) const NAME: &str = "adhesion";
 const WORK: f64 = 1000.0;
 const END: f64 = 0.5;
 
-fn path() -> AdhesivePath {
-    path_of(Adhesion::work(WORK))
+fn grid() -> Grid {
+    Grid::square(16, 3.2e-4).unwrap()
 }
 
-fn path_of(law: Adhesion) -> AdhesivePath {
-    let grid = Grid::square(16, 3.2e-4).unwrap();
-    let (surface, half_space) =
-        (self_affine(&grid, 0.8, 1.5e-6, 3), Boussinesq::new(grid, E_STAR).unwrap());
-    let builder = AdhesivePath::builder(&surface, &half_space, law);
+fn path() -> AdhesivePath {
+    path_of(&Boussinesq::new(grid(), E_STAR).unwrap(), Adhesion::work(WORK))
+}
+
+fn path_of(kernel: &dyn InfluenceKernel, law: Adhesion) -> AdhesivePath {
+    let surface = self_affine(&grid(), 0.8, 1.5e-6, 3);
+    let builder = AdhesivePath::builder(&surface, kernel, law);
     builder.until(ContactTarget::AreaFraction(END)).build().unwrap()
+}
+
+/// Every kind of body on which contact grows.
+fn bodies() -> Vec<Box<dyn InfluenceKernel>> {
+    let [sheet, soft, _] = super::rows::bodies();
+    let along = |axis| Box::new(SemiPeriodicBoussinesq::new(grid(), E_STAR, axis).unwrap());
+    let layered = |made: fn(Grid, LayeredBody) -> Result<Layered, Error>, body: &LayeredBody| {
+        Box::new(made(grid(), body.clone()).unwrap())
+    };
+    vec![
+        Box::new(Boussinesq::new(grid(), E_STAR).unwrap()),
+        Box::new(PeriodicBoussinesq::new(grid(), E_STAR).unwrap()),
+        along(Axis::X),
+        along(Axis::Y),
+        layered(Layered::free, &sheet),
+        layered(Layered::periodic, &sheet),
+        layered(Layered::free, &soft),
+        layered(Layered::periodic, &soft),
+    ]
 }
 
 /// States of both branches.
@@ -44,7 +70,9 @@ pub(super) fn column(name: &str) -> Result<(), Error> {
         "fields" | "unload" => fields(),
         "record" => record(),
         "resume" => resume(),
-        // The others take the record of contact that only grows, or are single loads, which know of no adhesion.
+        // Single loads and sweeps have no way to be given a law, and all others take states or a record of contact that
+        // only grows: an `AdhesiveBranch` is no `History`, which the compiler refuses. What is left is the file, and it
+        // is the record in it that is refused, whatever it was to be read for.
         _ => refused(),
     }
 }
@@ -104,28 +132,39 @@ fn through_a_file(record: &AdhesiveRecord, name: &str) -> AdhesiveRecord {
 
 /// Both branches come back bit for bit, and so do the fields of their states.
 fn record() -> Result<(), Error> {
+    for kernel in bodies() {
+        record_on(&*kernel)?;
+    }
+    Ok(())
+}
+
+fn record_on(kernel: &dyn InfluenceKernel) -> Result<(), Error> {
     // Half the stress of the triangle, over a longer range: nodes are pulled with all of it before they touch.
-    let maugis = Adhesion::maugis(WORK, 0.5 * path().law().stress());
-    for law in [Adhesion::work(WORK), maugis] {
-        let (path, states) = pulled_off(path_of(law));
+    let triangle = Adhesion::work(WORK);
+    let maugis = Adhesion::maugis(WORK, 0.5 * triangle.on(kernel)?.stress());
+    for law in [triangle, maugis] {
+        let (path, states) = pulled_off(path_of(kernel, law));
+        let last = states.states().last().unwrap();
+        assert_eq!((last.contact.contact_nodes, last.soft_nodes), (0, 0));
+        assert!(states.dissipated() >= 0.0 && states.pull_off() > 0.0);
         let is_cohesive = states.states().iter().any(|state| state.cohesive_nodes > 0);
         assert!(is_cohesive || law != maugis);
         let record = through_a_file(&AdhesiveRecord::new(&path, states.clone())?, "record");
         assert_eq!(record.states(), &states);
         assert_eq!((record.adhesion(), path.adhesion()), (law, law));
         let again = record.path()?;
+        assert_eq!(again.problem().table().origin(), kernel.origin());
         assert_eq!((again.law(), again.state()), (path.law(), path.state()));
         for state in states.states().iter().step_by(states.states().len() / 5) {
             assert_eq!(again.fields_at(state)?, path.fields_at(state)?);
         }
         // On a kernel that is given, if it is that one, and within a budget.
-        let on = |e_star: f64, budget: Option<usize>| {
-            record.path_on(&Boussinesq::new(record.grid(), e_star)?, budget)
-        };
-        let given = on(E_STAR, Some(1 << 30))?;
+        let on = |kernel: &dyn InfluenceKernel, budget| record.path_on(kernel, budget);
+        let given = on(kernel, Some(1 << 30))?;
         assert_eq!(given.state(), path.state());
-        assert!(matches!(on(2.0 * E_STAR, None), Err(Error::WrongKernel { .. })));
-        assert!(matches!(on(E_STAR, Some(1000)), Err(Error::MemoryBudget { budget: 1000, .. })));
+        let other = Boussinesq::new(record.grid(), 2.0 * E_STAR)?;
+        assert!(matches!(on(&other, None), Err(Error::WrongKernel { .. })));
+        assert!(matches!(on(kernel, Some(1000)), Err(Error::MemoryBudget { budget: 1000, .. })));
     }
     Ok(())
 }

@@ -142,7 +142,7 @@ impl AdhesiveRecord {
     ///
     /// Those of [`LoadingRecord::make_kernel`](super::LoadingRecord::make_kernel).
     pub fn make_kernel(&self) -> Result<KernelTable, Error> {
-        self.kernel.make(self.grid)
+        Ok(self.kernel.in_gauge(self.kernel.make(self.grid)?))
     }
 
     /// The same on the kernel given, which must be the one of the record, for kernels that are not of this crate; and
@@ -158,11 +158,13 @@ impl AdhesiveRecord {
     ) -> Result<AdhesivePath, Error> {
         let builder = AdhesivePath::builder(&self.heights, kernel, self.adhesion);
         let builder = memory_budget.into_iter().fold(builder, AdhesiveBuilder::memory_budget);
-        let targets = self.pending.iter().flatten().copied();
+        let last = self.states.states().last();
+        // Targets of a branch of unloading are none from where the surfaces are apart.
+        let targets = self.pending.iter().flatten().filter(|_| last.is_none()).copied();
         let builder = targets.fold(builder, AdhesiveBuilder::until);
         let mut path = builder.build()?;
         self.kernel.check(path.problem().table())?;
-        if let Some(last) = self.states.states().last() {
+        if let Some(last) = last {
             path.restore(self.trace.clone(), *last, self.pending.as_deref())?;
         }
         Ok(path)
