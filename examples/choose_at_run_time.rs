@@ -16,29 +16,33 @@
 //! rough    spectral                    1.0182e4
 //! ```
 
+use std::error::Error;
+
 use asperity::surface::Paraboloid;
 use asperity::{
-    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine,
-    Spectral, Surface,
+    Boussinesq, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine, Spectral,
+    Surface,
 };
 
-fn surface(name: &str) -> Result<Box<dyn Surface>, Error> {
+fn surface(name: &str) -> Result<Box<dyn Surface>, Box<dyn Error>> {
     Ok(match name {
         "sphere" => Box::new(Paraboloid::new(1.0)?),
-        _ => Box::new(SelfAffine::zhang2020(1)),
+        "rough" => Box::new(SelfAffine::zhang2020(1)),
+        _ => return Err(format!("no surface is called {name}").into()),
     })
 }
 
-fn half_space(name: &str, grid: Grid) -> Result<Box<dyn InfluenceKernel>, Error> {
+fn half_space(name: &str, grid: Grid) -> Result<Box<dyn InfluenceKernel>, Box<dyn Error>> {
     let e_star = 115e9;
     Ok(match name {
+        "free" => Box::new(Boussinesq::new(grid, e_star)?),
         "periodic" => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
         "spectral" => Box::new(Spectral::new(grid, e_star)?),
-        _ => Box::new(Boussinesq::new(grid, e_star)?),
+        _ => return Err(format!("no half-space is called {name}").into()),
     })
 }
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), Box<dyn Error>> {
     let grid = Grid::square(128, 2.5e-3)?;
     println!("surface  half-space  load at 10 % contact [N]");
     for surface_name in ["sphere", "rough"] {

@@ -21,8 +21,9 @@ use asperity::{Error, FixedLoadSolver, Grid, SelfAffine};
 fn main() -> Result<(), Error> {
     let grid = Grid::square(128, 1e-3)?; // 1 mm × 1 mm
     let surface = SelfAffine::new(0.8, 0.25e-3, 8.0 * grid.dx(), Amplitude::RmsHeight(0.5e-6), 1)?;
-    let steel = Base::HalfSpace { young: 210e9, poisson: 0.3 };
-    let coat = |young, poisson| Layer { young, poisson, thickness: 5e-6 };
+    let steel = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
+    let coat =
+        |youngs_modulus, poissons_ratio| Layer { youngs_modulus, poissons_ratio, thickness: 5e-6 };
     let load = 0.1e9 * grid.nominal_area(); // 100 MPa on average
     println!("5 µm of               contact [%]  greatest pressure [GPa]  K_i [GN/m]");
     for (name, layer) in [

@@ -73,8 +73,8 @@ use asperity::joint::{Conduction, FeProgram, InterfaceTable};
 use asperity::loading::History;
 use asperity::surface::Amplitude;
 use asperity::{
-    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine,
-    composite_modulus,
+    Boussinesq, ContactTarget, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
+    SelfAffine, composite_modulus,
 };
 
 /// Copper: Young's modulus \[Pa\] and Poisson's ratio, and resistivity \[Ω m\].
@@ -93,13 +93,13 @@ fn history(surface: &SelfAffine, half_space: &dyn InfluenceKernel) -> Result<His
 
 /// The resistance \[Ω\] at each load, and the contact area fraction there.
 fn resistances(history: &History, copper: &Conduction) -> Result<Vec<(f64, f64)>, Error> {
-    let mut resistances = Vec::new();
-    for state in LOADS.iter().filter_map(|&load| history.at_load(load)) {
+    let resistance = |load| {
+        let state = history.at(ContactTarget::Load(load))?;
         // From the contact stiffness if there is one, which is on a free half-space.
         let conductance = copper.of(&state.contact, history.layering())?.unwrap_or(0.0);
-        resistances.push((1.0 / conductance, state.contact.contact_area_fraction));
-    }
-    Ok(resistances)
+        Ok((1.0 / conductance, state.contact.contact_area_fraction))
+    };
+    LOADS.into_iter().map(resistance).collect()
 }
 
 fn main() -> Result<(), Error> {

@@ -21,7 +21,9 @@
 
 use asperity::loading::History;
 use asperity::surface::Amplitude;
-use asperity::{ContactState, Error, Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine};
+use asperity::{
+    ContactState, ContactTarget, Error, Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine,
+};
 use rayon::prelude::*;
 
 const E_STAR: f64 = 115e9;
@@ -56,8 +58,9 @@ fn main() -> Result<(), Error> {
     );
     let area = 1e-3 * 1e-3;
     for pressure in PRESSURES {
-        let at_load = |history: &History| history.at_load(pressure * area).map(|s| s.contact);
-        let states: Vec<ContactState> = paths.iter().filter_map(at_load).collect();
+        let target = ContactTarget::MeanPressure(pressure);
+        let at_target = |path: &History| path.at(target).map(|state| state.contact);
+        let states: Vec<ContactState> = paths.iter().map(at_target).collect::<Result<_, _>>()?;
         let column = |value: fn(&ContactState) -> f64| {
             let values: Vec<f64> = states.iter().map(value).collect();
             spread(&values)

@@ -30,7 +30,7 @@
 //! |---|---|
 //! | follow the loading path | [`loading`]: [`LoadingSolver`], an iterator of [`LoadingState`]; [`History`](loading::History) reads it at any load |
 //! | solve for one load, or for a sweep of loads | [`fixed_load`]: [`FixedLoadSolver`] |
-//! | contact patches, percolation, leakage, distributions | [`patches`] |
+//! | contact patches, percolation and sealing, distributions | [`patches`] |
 //! | how much leaks through the gap | [`leak`] |
 //! | contact conductance, tables for finite elements | [`joint`] |
 //! | read the file of an instrument | [`io::read_surface`], [`surface::Topography`] |
@@ -61,10 +61,12 @@
 //!   `1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂` ([`composite_modulus`]); no factor 2.
 //! * **Heights** are positive towards the half-space: the highest node touches first. Only differences of heights
 //!   matter. Two rough bodies are equivalent to one body with the sum of their heights ([`Surface::plus`]).
-//! * **Pressure** is positive in compression and never negative. **Displacement** is positive into the half-space,
+//! * **Pressure** is positive in compression; without adhesion it is never negative. **Displacement** is positive into the half-space,
 //!   **gap** positive where the surfaces are apart.
-//! * **Approach** δ is measured from first touch, where it is 0, and grows with the load.
-//! * **State n** is the instant at which the n-th node touches; the pressure on that node is still zero. Stiffnesses
+//! * **Approach** δ is measured from first touch, where it is 0, and grows with the load; on a periodic half-space it is
+//!   that of the mean planes. Surfaces that stick are pulled apart at negative ones.
+//! * **State n** is the n-th event: where no node leaves or yields, the instant at which the n-th node touches; the
+//!   pressure on that node is still zero. Stiffnesses
 //!   are derivatives on further loading: `contact_stiffness` is dW/dδ (`None` on a periodic half-space, which has no
 //!   distant point at rest), `interfacial_stiffness` is −dW/d(mean gap).
 //! * **Area** is counted in cells. A fraction of the nominal area runs from 0 to 1.
@@ -90,7 +92,7 @@
 //! |---|---|---|
 //! | `io` | yes | files of instruments, and records of paths on disk; without it surfaces are read from NumPy files only |
 //! | `rayon` | yes | threads; they change no result by a single bit |
-//! | `serde` | with `io` | grids, states, certificates, solutions and records as data of any format that serde knows |
+//! | `serde` | with `io` | grids, states, certificates, solutions and records of loading as data of any format that serde knows |
 //!
 //! # Limits of the model
 //!

@@ -155,10 +155,10 @@ impl Prony {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a Poisson's ratio below −1 or above ½, and at −1.
-    pub fn plane_strain(&self, poisson: f64) -> Result<Self, Error> {
-        let is_so = poisson > -1.0 && poisson <= 0.5;
-        Error::require("Poisson's ratio", poisson, is_so, "above -1 and at most 0.5")?;
-        self.relative_to((1.0 - poisson) * (1.0 + poisson))
+    pub fn plane_strain(&self, poissons_ratio: f64) -> Result<Self, Error> {
+        let is_so = poissons_ratio > -1.0 && poissons_ratio <= 0.5;
+        Error::require("Poisson's ratio", poissons_ratio, is_so, "above -1 and at most 0.5")?;
+        self.relative_to((1.0 - poissons_ratio) * (1.0 + poissons_ratio))
     }
 
     /// This body on top of another one: creep functions add up, as in the composite modulus of two bodies,

@@ -29,7 +29,7 @@ impl Conduction {
     /// ```math
     /// \max_{W_2 > W} \frac{\delta(W_2) - \delta(W) - s}{W_2 - W} \le \delta_r'(W) \le \min_{W_1 < W} \frac{\delta(W) + s - \delta(W_1)}{W - W_1} ,
     /// ```
-    /// and the slope is ρE\*/2 times the conductance's reciprocal. On a periodic half-space δ is what the mean gap has
+    /// and the slope is 2/(ρE\*) times the conductance's reciprocal. On a periodic half-space δ is what the mean gap has
     /// closed. So it is on one that repeats along one side, with 2 s in place of s: as the mean displacement depends on
     /// where the load is, the mean gap of the rougher surface is between those of the known curve at approaches of s
     /// less and s more. Without s both bounds are the stiffness before and behind the event. The upper one needs a path

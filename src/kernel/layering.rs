@@ -83,13 +83,16 @@ impl LayeredBody {
     /// What the body is made of.
     #[must_use]
     pub fn layering(&self) -> Layering {
-        let mut layers = self.layers().iter().map(|layer| (layer.young, layer.poisson));
+        let mut layers =
+            self.layers().iter().map(|layer| (layer.youngs_modulus, layer.poissons_ratio));
         let Some(first) = layers.next() else {
             return Layering::Unknown;
         };
         let is_one = layers.all(|other| other == first);
         match self.base() {
-            Base::HalfSpace { young, poisson } if is_one && (young, poisson) == first => {
+            Base::HalfSpace { youngs_modulus, poissons_ratio }
+                if is_one && (youngs_modulus, poissons_ratio) == first =>
+            {
                 Layering::HalfSpace
             }
             Base::Rigid if is_one && self.counterpart().is_none() => Layering::OneMaterial,
@@ -122,8 +125,9 @@ mod tests {
 
     #[test]
     fn bodies_are_told_by_their_materials() -> Result<(), Error> {
-        let layer = |young, thickness| Layer { young, poisson: 0.3, thickness };
-        let half_space = |young| Base::HalfSpace { young, poisson: 0.3 };
+        let layer =
+            |youngs_modulus, thickness| Layer { youngs_modulus, poissons_ratio: 0.3, thickness };
+        let half_space = |youngs_modulus| Base::HalfSpace { youngs_modulus, poissons_ratio: 0.3 };
         let coat = [layer(2.0, 1.0)];
         let two = [layer(2.0, 1.0), layer(2.0, 3.0)];
         let graded = [layer(2.0, 1.0), layer(3.0, 1.0)];

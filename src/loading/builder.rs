@@ -168,7 +168,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
 
     /// Ends the path at a target: at exactly this load, mean pressure, approach or mean gap, or with as many nodes in
     /// contact as fit into this fraction of the nominal area. Of several targets the first one reached
-    /// counts; of several of one kind the last one given.
+    /// counts.
     pub fn until(mut self, target: ContactTarget) -> Self {
         self.settings.targets.push(target);
         self
@@ -399,18 +399,18 @@ mod tests {
         Ok(())
     }
 
-    /// A mean pressure is a load: 3 Pa on nine cells of 2 m². The last limit of a kind counts.
+    /// A mean pressure is a load: 3 Pa on nine cells of 2 m². The nearest limit of a kind counts.
     #[test]
     fn limits_of_a_path() -> Result<(), Error> {
         use ContactTarget::{Approach, Load};
         let (surface, kernel) = (test_chain::surface(&[0.0; 9])?, test_chain::kernel(9)?);
         let path = LoadingSolver::builder(&surface, &kernel)
             .max_load(9.0)
-            .max_approach(1.0)
             .max_approach(2.0)
-            .max_mean_pressure(3.0)
+            .max_approach(1.0)
+            .max_mean_pressure(0.25)
             .build()?;
-        assert_eq!(path.targets(), [Load(54.0), Approach(2.0)]);
+        assert_eq!(path.targets(), [Load(4.5), Approach(1.0)]);
         let printed = format!("{:?}", LoadingSolver::builder(&surface, &kernel).max_load(9.0));
         assert!(printed.contains("targets: [Load(9.0)]"), "{printed}");
         for (window, is_one) in [(0, false), (1, true)] {

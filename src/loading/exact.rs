@@ -14,8 +14,8 @@ use super::state::ContactEvent;
 use super::tolerances::ties_until;
 use super::trial::{Trial, of_nodes};
 use super::tuning::{
-    AS_MANY_AGAIN, FEWEST_BETWEEN_RELEASES, LEAST_RATE, MULTIPLE, OF_RESIDUAL, RECOGNISED, SHALLOW,
-    SQUARE, TOLERANCE,
+    AS_MANY_AGAIN, FEWEST_BETWEEN_RELEASES, LEAST_RATE, MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE,
+    TOLERANCE,
 };
 use super::walk::{Carried, Walk};
 use super::window::{Watched, Window};
@@ -204,9 +204,7 @@ impl Exact {
         if let Some(plastic) = run.plastic.clone().filter(|plastic| plastic.count() > 0) {
             let tolerance = TOLERANCE * (run.problem.grid().cell_aspect() / SQUARE).max(1.0);
             let length = run.problem.greatest_gap() + run.scalars.approach();
-            // Nodes that have yielded by an estimate may not be as deep as that by a factor.
-            let estimated = if run.inherited > 0.0 { SHALLOW * length } else { 0.0 };
-            let gap = (tolerance * length).max(run.inherited).max(estimated);
+            let gap = (tolerance * length).max(run.inherited_slack());
             let slack = Slack { gap, tension: gap, excess: gap, rate: TOLERANCE };
             let rates = survey(run, &plastic, &mut self.ranking, slack)?;
             let times = self.ranking.iter().map(|&(time, _)| time);

@@ -56,8 +56,13 @@ impl FromIterator<LoadingState> for History {
     }
 }
 
+/// The state at a limit with which a path ended is left out where others follow: it is no event.
 impl Extend<LoadingState> for History {
     fn extend<I: IntoIterator<Item = LoadingState>>(&mut self, states: I) {
+        let mut states = states.into_iter().peekable();
+        if states.peek().is_some() {
+            self.states.pop_if(|last| last.event == ContactEvent::Limit);
+        }
         self.states.extend(states);
         self.window_end = None;
     }
@@ -223,6 +228,12 @@ impl History {
     /// rise again: the first state there.
     #[must_use]
     pub fn at_mean_gap(&self, mean_gap: f64) -> Option<LoadingState> {
+        // In full contact nodes may go on to yield: there is none left from its beginning on.
+        let is_full = |state: &&LoadingState| state.contact.contact_area_fraction == 1.0;
+        let mut full = self.states.iter().filter(is_full);
+        if let Some(state) = full.find(|state| state.contact.mean_gap == mean_gap) {
+            return Some(*state);
+        }
         let mut states = self.states.iter();
         let after = states.position(|state| state.contact.mean_gap < mean_gap);
         self.read(

@@ -82,7 +82,7 @@ impl Limits {
     ) -> Result<(), Error> {
         match target {
             ContactTarget::Load(load) => {
-                self.load = Error::require_positive("greatest load", load)?;
+                self.load = self.load.min(Error::require_positive("greatest load", load)?);
             }
             ContactTarget::MeanPressure(mean_pressure) => {
                 let mean_pressure =
@@ -91,11 +91,12 @@ impl Limits {
                 self.set(load, grid, unloaded)?;
             }
             ContactTarget::Approach(approach) => {
-                self.approach = Error::require_positive("greatest approach", approach)?;
+                let approach = Error::require_positive("greatest approach", approach)?;
+                self.approach = self.approach.min(approach);
             }
             ContactTarget::AreaFraction(fraction) => {
-                self.area_nodes = grid.nodes_in(fraction)?;
-                self.area_fraction = fraction;
+                self.area_nodes = self.area_nodes.min(grid.nodes_in(fraction)?);
+                self.area_fraction = self.area_fraction.min(fraction);
             }
             ContactTarget::MeanGap(mean_gap) => {
                 if !(mean_gap >= 0.0 && mean_gap < unloaded) {
@@ -105,7 +106,7 @@ impl Limits {
                         expected: "not negative, and below the mean gap of surfaces that just touch",
                     });
                 }
-                self.least_mean_gap = mean_gap;
+                self.least_mean_gap = self.least_mean_gap.max(mean_gap);
             }
         }
         Ok(())
@@ -219,39 +220,55 @@ impl Limits {
         next: &LoadingState,
     ) -> Option<(LoadingEnd, Option<LoadingState>)> {
         let last = last?;
-        let exceeded = [
-            (
-                LoadingEnd::Load,
-                // On a plateau the load is reached where that begins.
-                next.contact.load > self.load
-                    || (last.contact.load == self.load && last.contact.is_plateau()),
-                last.contact.at_load(self.load),
-            ),
-            (
-                LoadingEnd::Approach,
-                next.contact.approach > self.approach,
-                // In full contact mean planes come no closer until a node yields: only errors of states pass the limit.
-                last.contact
-                    .at_approach(self.approach)
-                    .or(Some(ContactState { approach: self.approach, ..last.contact })),
-            ),
-            (
-                LoadingEnd::MeanGap,
-                next.contact.mean_gap < self.least_mean_gap,
-                last.contact.at_mean_gap(self.least_mean_gap),
-            ),
-        ];
-        let exceeded = exceeded.into_iter().filter(|(_, exceeded, _)| *exceeded);
-        let first = exceeded
-            .filter_map(|(end, _, state)| Some((end, state?)))
-            .min_by(|(_, a), (_, b)| a.order(b));
-        if let Some((end, state)) = first {
+        if let Some((end, state)) = self.first_exceeded(&last.contact, Some(&next.contact)) {
             return Some((end, last.at_limit(state)));
         }
         // What comes next is one more node, or a yield behind the last one.
         let beyond = next.event != ContactEvent::Release;
         let end = beyond.then(|| self.enough(last.contact.contact_nodes)).flatten();
         end.map(|end| (end, None))
+    }
+
+    /// The same behind the last event that there is, from where on everything is linear.
+    pub(super) fn behind(&self, last: LoadingState) -> Option<(LoadingEnd, Option<LoadingState>)> {
+        let (end, state) = self.first_exceeded(&last.contact, None)?;
+        Some((end, last.at_limit(state)))
+    }
+
+    /// The first limit of load, approach or mean gap from a state to the next, which may be none.
+    fn first_exceeded(
+        &self,
+        last: &ContactState,
+        next: Option<&ContactState>,
+    ) -> Option<(LoadingEnd, ContactState)> {
+        let is_full = last.contact_area_fraction == 1.0;
+        let exceeded = [
+            (
+                LoadingEnd::Load,
+                // On a plateau the load is reached where that begins.
+                next.map_or(self.load < f64::INFINITY, |next| next.load > self.load)
+                    || (last.load == self.load && last.is_plateau()),
+                last.at_load(self.load),
+            ),
+            (
+                LoadingEnd::Approach,
+                next.map_or(self.approach < f64::INFINITY, |next| next.approach > self.approach),
+                // In full contact mean planes come no closer until a node yields: only errors of states pass the limit.
+                last.at_approach(self.approach)
+                    .or(Some(ContactState { approach: self.approach, ..*last })),
+            ),
+            (
+                LoadingEnd::MeanGap,
+                // In full contact there is none left, and nodes may go on to yield.
+                next.map_or(self.least_mean_gap >= 0.0, |next| next.mean_gap < self.least_mean_gap)
+                    || (is_full && last.mean_gap == self.least_mean_gap),
+                last.at_mean_gap(self.least_mean_gap),
+            ),
+        ];
+        let exceeded = exceeded.into_iter().filter(|(_, exceeded, _)| *exceeded);
+        exceeded
+            .filter_map(|(end, _, state)| Some((end, state?)))
+            .min_by(|(_, a), (_, b)| a.order(b))
     }
 }
 

@@ -93,8 +93,16 @@ impl LoadingPath {
                     );
                 }
                 LoadingEnd::FullContact
+            } else if let Some(end) = self.limits.enough(nodes) {
+                end
+            } else if let Some((end, at_limit)) =
+                self.state.and_then(|last| self.limits.behind(last))
+            {
+                self.end = Some(end);
+                self.state = at_limit.or(self.state);
+                return Ok(at_limit);
             } else {
-                self.limits.enough(nodes).unwrap_or(LoadingEnd::NoMoreEvents)
+                LoadingEnd::NoMoreEvents
             });
             return Ok(None);
         };

@@ -248,25 +248,24 @@ impl Phase {
         let at = (nodes.len(), approach);
         if !run.releases.is_prefix(step) {
             // Nodes of that contact have left the updater since.
-            if let (Self::Iterations(iterations), Some(plastic)) = (&mut *self, &run.plastic) {
-                let grid = problem.grid();
-                let bytes = |contact| iterations.bytes(grid.nodes(), contact);
-                let needed = bytes(contact.len()).saturating_add(bytes(nodes.len()));
-                run.memory.check(needed, contact.len())?;
-                let yielded: Vec<usize> = run.releases.yielded_at(step).collect();
-                let (_, problem) = plastic.beside(&yielded)?;
-                let contact = ContactSequence::with_order(grid, nodes.iter().copied())?;
-                iterations.solve_apart(&problem, &contact, at.0, approach, solution)?;
-                gap_field::check_solution(solution, at.0)?;
-                return Ok(nodes);
-            }
-            let own = self.bytes(problem.grid().nodes(), contact.len());
-            let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
-            run.memory.check(own.saturating_add(rebuilt), contact.len())?;
+            let grid = problem.grid();
+            let bytes = |contact| self.bytes(grid.nodes(), contact);
+            let factor = RecursiveCholesky::bytes_of(nodes.len());
+            // Where nothing yields, a factor of a small contact is less.
+            let iterates = matches!(self, Self::Iterations(_))
+                && (run.plastic.is_some() || bytes(nodes.len()) < factor);
+            let beside = if iterates { bytes(nodes.len()) } else { factor };
+            run.memory.check(bytes(contact.len()).saturating_add(beside), contact.len())?;
             let yielded: Vec<usize> = run.releases.yielded_at(step).collect();
             let beside =
                 run.plastic.as_ref().map(|plastic| plastic.beside(&yielded)).transpose()?;
             let problem = beside.as_ref().map_or(problem, |(_, problem)| problem);
+            if let (Self::Iterations(iterations), true) = (self, iterates) {
+                let contact = ContactSequence::with_order(grid, nodes.iter().copied())?;
+                iterations.solve_apart(problem, &contact, at.0, approach, solution)?;
+                gap_field::check_solution(solution, at.0)?;
+                return Ok(nodes);
+            }
             let (mut updater, contact) = RecursiveCholesky::of(problem, &nodes)?;
             gap_field::solve(problem, &contact, &mut updater, at, solution)?;
             return Ok(nodes);

@@ -24,7 +24,7 @@ pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, E
         check_growth(run)?;
     }
     let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
-    fill(run, ranking, Some(0.0), |line| {
+    fill(run, ranking, Some(run.inherited_slack()), |line| {
         if may_leave && line.closing <= LEAST_RATE {
             return f64::INFINITY;
         }

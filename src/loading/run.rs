@@ -1,6 +1,6 @@
 //! A path under way: what its procedures share.
 
-use super::tuning::TOLERANCE;
+use super::tuning::{SHALLOW, TOLERANCE};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
@@ -410,6 +410,17 @@ impl LoadingRun {
     pub(super) fn greatest_rate(&self) -> f64 {
         let rates = self.field.solution().rate.iter();
         rates.copied().fold(0.0, f64::max)
+    }
+
+    /// How far gaps of the state that the path goes on from may be off, if that is an estimate: a node that has touched
+    /// or yielded by it may lie beyond where a factor, or another solution, has it.
+    pub(super) fn inherited_slack(&self) -> f64 {
+        if self.inherited > 0.0 {
+            let length = self.problem.greatest_gap() + self.scalars.approach();
+            self.inherited.max(SHALLOW * length)
+        } else {
+            0.0
+        }
     }
 
     /// The error of a quantity of a node with the wrong sign at the present approach.

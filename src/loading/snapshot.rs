@@ -99,6 +99,7 @@ impl Snapshot {
             return refused("load", load, "the load of the state");
         }
         self.check_tension(run, phase.tolerance(), state)?;
+        self.check_excess(run, phase.tolerance(), state)?;
         let least_gap = self.least_gap_outside(run, state.step)?;
         if least_gap < -self.allowed_gap(run, state) {
             return refused("least gap out of contact", least_gap, "no overlap");
@@ -119,13 +120,39 @@ impl Snapshot {
     ) -> Result<(), Error> {
         let least = self.nodes.iter().map(|&node| self.pressure[node]);
         let least = least.fold(f64::INFINITY, f64::min);
-        let allowed = (allowed(state) * self.pressure.max())
-            .max(self.rounding(run) / run.problem.grid().cell_area())
-            .max(self.pressure_error(run, tolerance));
-        if least < -allowed {
+        if least < -self.allowed_pressure(run, tolerance, state) {
             return Err(not_on_path(state, "least pressure in contact", least, "no tension"));
         }
         Ok(())
+    }
+
+    /// The same for pressures above the hardness of their nodes.
+    fn check_excess(
+        &self,
+        run: &LoadingRun,
+        tolerance: f64,
+        state: &LoadingState,
+    ) -> Result<(), Error> {
+        let Some(plastic) = &run.plastic else { return Ok(()) };
+        let hardness = plastic.hardness().values();
+        let excess = self.nodes.iter().map(|&node| self.pressure[node] - hardness[node]);
+        let greatest = excess.fold(f64::NEG_INFINITY, f64::max);
+        if greatest > self.allowed_pressure(run, tolerance, state) {
+            return Err(not_on_path(
+                state,
+                "greatest pressure above the hardness",
+                greatest,
+                "none",
+            ));
+        }
+        Ok(())
+    }
+
+    /// How far pressures of a state may be off, with solutions of a tolerance.
+    fn allowed_pressure(&self, run: &LoadingRun, tolerance: f64, state: &LoadingState) -> f64 {
+        (allowed(state) * self.pressure.max())
+            .max(self.rounding(run) / run.problem.grid().cell_area())
+            .max(self.pressure_error(run, tolerance))
     }
 
     /// The load that goes with the gaps to which contact is closed, by the stiffness.

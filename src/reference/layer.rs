@@ -23,29 +23,29 @@ use crate::{Error, plane_strain_modulus};
 /// [`Error::NotPositive`] for a modulus, the thickness or the wave number; [`Error::OutOfRange`] for a Poisson's ratio.
 pub fn layer_compliance(
     q: f64,
-    (young, poisson, thickness): (f64, f64, f64),
+    (youngs_modulus, poissons_ratio, thickness): (f64, f64, f64),
     half_space: Option<(f64, f64)>,
 ) -> Result<f64, Error> {
-    let e_star = plane_strain_modulus(young, poisson)?;
+    let e_star = plane_strain_modulus(youngs_modulus, poissons_ratio)?;
     let q = Error::require_positive("wave number", q)?;
     let x = q * Error::require_positive("thickness of a layer", thickness)?;
     let alone = 2.0 / (e_star * q);
-    let shear = |young: f64, nu: f64| young / (2.0 * (1.0 + nu));
+    let shear = |youngs_modulus: f64, nu: f64| youngs_modulus / (2.0 * (1.0 + nu));
     let (m, below) = match half_space {
         Some((other, nu)) => {
             plane_strain_modulus(other, nu)?;
-            (shear(young, poisson) / shear(other, nu), 3.0 - 4.0 * nu)
+            (shear(youngs_modulus, poissons_ratio) / shear(other, nu), 3.0 - 4.0 * nu)
         }
         None => (0.0, 1.0),
     };
     if x > 300.0 {
         return Ok(alone);
     }
-    let own = 3.0 - 4.0 * poisson;
+    let own = 3.0 - 4.0 * poissons_ratio;
     let (first, second) = (1.0 + m * below, m + own);
     let (u, w) = ((1.0 + own) / first, (1.0 + own) / second);
     let one_less_product = m * (1.0 + own) * (1.0 + below) / (first * second);
-    let one_more_kappa = (2.0 * m + 2.0 - 4.0 * poisson) / second;
+    let one_more_kappa = (2.0 * m + 2.0 - 4.0 * poissons_ratio) / second;
     let fades = (-2.0 * x).exp();
     let odd = sinh_less(2.0 * x);
     let even = cosh_less(2.0 * x);
@@ -84,34 +84,34 @@ fn series(mut term: f64, y: f64, mut k: f64) -> f64 {
 /// K. L. Johnson, *Contact Mechanics*, §5.8; M. J. Jaffar, Int. J. Mech. Sci. 31 (1989) 229.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThinLayer {
-    young: f64,
-    poisson: f64,
+    youngs_modulus: f64,
+    poissons_ratio: f64,
     thickness: f64,
 }
 
 impl ThinLayer {
-    /// A layer of Young's modulus `young` \[Pa\], Poisson's ratio `poisson` and thickness `thickness` \[m\].
+    /// A layer of this Young's modulus \[Pa\], Poisson's ratio and thickness \[m\].
     ///
     /// # Errors
     ///
     /// [`Error::NotPositive`] for modulus or thickness; [`Error::OutOfRange`] for Poisson's ratio.
-    pub fn new(young: f64, poisson: f64, thickness: f64) -> Result<Self, Error> {
-        plane_strain_modulus(young, poisson)?;
+    pub fn new(youngs_modulus: f64, poissons_ratio: f64, thickness: f64) -> Result<Self, Error> {
+        plane_strain_modulus(youngs_modulus, poissons_ratio)?;
         let thickness = Error::require_positive("thickness of a layer", thickness)?;
-        Ok(Self { young, poisson, thickness })
+        Ok(Self { youngs_modulus, poissons_ratio, thickness })
     }
 
     /// Whether Poisson's ratio is ½.
     #[must_use]
     pub fn is_incompressible(&self) -> bool {
-        self.poisson == 0.5
+        self.poissons_ratio == 0.5
     }
 
     /// Pressure over displacement of a wide uniform pressure, M / h \[Pa/m\]; infinite if incompressible.
     #[must_use]
     pub fn foundation_modulus(&self) -> f64 {
-        let nu = self.poisson;
-        self.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * self.thickness)
+        let nu = self.poissons_ratio;
+        self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * self.thickness)
     }
 
     /// Approach under a sphere of radius R = `radius` \[m\] with a contact of radius a: a²/(2R), and a²/(4R) if
@@ -127,7 +127,7 @@ impl ThinLayer {
     pub fn sphere_load(&self, radius: f64, contact_radius: f64) -> f64 {
         let square = contact_radius * contact_radius;
         if self.is_incompressible() {
-            PI * self.young * square.powi(3) / (96.0 * radius * self.thickness.powi(3))
+            PI * self.youngs_modulus * square.powi(3) / (96.0 * radius * self.thickness.powi(3))
         } else {
             PI * self.foundation_modulus() * square * square / (4.0 * radius)
         }
@@ -139,7 +139,7 @@ impl ThinLayer {
     pub fn sphere_pressure(&self, radius: f64, contact_radius: f64, r: f64) -> f64 {
         let inside = (contact_radius * contact_radius - r * r).max(0.0);
         if self.is_incompressible() {
-            self.young * inside * inside / (32.0 * radius * self.thickness.powi(3))
+            self.youngs_modulus * inside * inside / (32.0 * radius * self.thickness.powi(3))
         } else {
             self.foundation_modulus() * inside / (2.0 * radius)
         }
@@ -150,7 +150,7 @@ impl ThinLayer {
     pub fn punch_stiffness(&self, radius: f64) -> f64 {
         let square = radius * radius;
         if self.is_incompressible() {
-            PI * self.young * square * square / (8.0 * self.thickness.powi(3))
+            PI * self.youngs_modulus * square * square / (8.0 * self.thickness.powi(3))
         } else {
             PI * square * self.foundation_modulus()
         }
@@ -176,9 +176,12 @@ mod tests {
                 let below = 1.0 - (lambda + kappa + 4.0 * kappa * x * x) * theta
                     + lambda * kappa * theta * theta;
                 let expected = (1.0 - nu1) / (g1 * q) * above / below;
-                let young = |g: f64, nu: f64| 2.0 * g * (1.0 + nu);
-                let found =
-                    layer_compliance(q, (young(g1, nu1), nu1, h), Some((young(g2, nu2), nu2)))?;
+                let youngs_modulus = |g: f64, nu: f64| 2.0 * g * (1.0 + nu);
+                let found = layer_compliance(
+                    q,
+                    (youngs_modulus(g1, nu1), nu1, h),
+                    Some((youngs_modulus(g2, nu2), nu2)),
+                )?;
                 // Some twenty roundings of numbers near 1.
                 assert!((found / expected - 1.0).abs() < 1e-14, "{m} {x}: {found} {expected}");
             }
@@ -189,19 +192,19 @@ mod tests {
     /// Bentall and Johnson's, and the film h³ q² / E at ν = ½, to the next order (q h)².
     #[test]
     fn a_rigid_base_is_the_limit() -> Result<(), Error> {
-        let (young, h) = (2.0, 0.1);
+        let (youngs_modulus, h) = (2.0, 0.1);
         for x in [1e-5_f64, 0.5, 3.0] {
             for nu in [0.0, 0.3, 0.5] {
                 let kappa = 3.0 - 4.0 * nu;
                 let above = 2.0 * kappa * (2.0 * x).sinh() - 4.0 * x;
                 let below = 2.0 * kappa * (2.0 * x).cosh() + 4.0 * x * x + kappa * kappa + 1.0;
-                let expected = 2.0 * (1.0 - nu * nu) * h / (young * x) * above / below;
-                let found = layer_compliance(x / h, (young, nu, h), None)?;
+                let expected = 2.0 * (1.0 - nu * nu) * h / (youngs_modulus * x) * above / below;
+                let found = layer_compliance(x / h, (youngs_modulus, nu, h), None)?;
                 if nu < 0.5 || x > 0.1 {
                     // At ν = ½ and x = ½ a digit cancels in the first.
                     assert!((found / expected - 1.0).abs() < 2e-14, "{nu} {x}");
                 } else {
-                    let film = h * x * x / young;
+                    let film = h * x * x / youngs_modulus;
                     assert!((found / film - 1.0).abs() < 2.0 * x * x, "{x}: {found} {film}");
                 }
             }

@@ -47,8 +47,8 @@
 //!
 //! 1. displacements under tangential tractions are κ times those under pressures, in one direction. Cerruti's
 //!    half-space does that for ν = 0; κ is its mean over directions. At ν = 0.3 isotropic rough surfaces had T within
-//!    0.5 %, and dissipations within 4 % from a third of the sliding displacement on; ridges along or across T 2 % and
-//!    5 %.
+//!    0.5 %, and dissipations within 4 % from a third of the sliding displacement on; ridges along or across T 2.4 % and
+//!    5.1 %.
 //! 2. tangential tractions do not move surfaces normally: Dundurs' β is 0, as of bodies alike. A rigid surface on a
 //!    body of ν = 0.3 has 0.29. T of the first loading is then up to 6 % less, and steady cycles dissipate 2 to 10 %
 //!    more, at a tenth of the sliding displacement 9 % less to 29 % more. *The first loading dissipates several times

@@ -35,7 +35,7 @@ use crate::{Boundary, Error, Grid, InfluenceKernel, StressError};
 pub struct Subsurface {
     domain: Domain,
     /// Of a homogeneous body.
-    poisson: f64,
+    poissons_ratio: f64,
     layers: Option<LayeredBody>,
     /// Traction over pressure along x and along y.
     friction: (f64, f64),
@@ -94,7 +94,7 @@ impl Subsurface {
         };
         // Layers have ratios of their own.
         let ratio = match layers.as_ref().and_then(|body| body.layers().first()) {
-            Some(top) => top.poisson,
+            Some(top) => top.poissons_ratio,
             None => poissons_ratio,
         };
         let body = Self::with(Domain { grid, boundary, between }, ratio)?;
@@ -107,8 +107,8 @@ impl Subsurface {
         }
         let is_one = poissons_ratio > -1.0 && poissons_ratio <= 0.5;
         let expected = "above -1 and at most 1/2";
-        let poisson = Error::require("Poisson's ratio", poissons_ratio, is_one, expected)?;
-        Ok(Self { domain, poisson, layers: None, friction: (0.0, 0.0) })
+        let poissons_ratio = Error::require("Poisson's ratio", poissons_ratio, is_one, expected)?;
+        Ok(Self { domain, poissons_ratio, layers: None, friction: (0.0, 0.0) })
     }
 
     /// The same while it slides: each cell carries a traction of `coefficient` times its pressure as well, in the
@@ -160,7 +160,7 @@ impl Subsurface {
     /// Poisson's ratio, of layers that of the uppermost.
     #[must_use]
     pub fn poissons_ratio(&self) -> f64 {
-        self.poisson
+        self.poissons_ratio
     }
 
     /// Stresses below the centres of the cells, on an interface of layers on its upper side, at a depth z ≥ 0 \[m\]
@@ -204,7 +204,7 @@ impl Subsurface {
                 Some(below) => StressKernel::of_layers(self.domain, &below, depth),
                 None => Err(StressError::InRigidBase { depth, thickness: body.thickness() }.into()),
             },
-            _ => StressKernel::new(self.domain, Response::new(load, self.poisson), depth),
+            _ => StressKernel::new(self.domain, Response::new(load, self.poissons_ratio), depth),
         }
     }
 

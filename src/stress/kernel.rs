@@ -54,9 +54,9 @@ impl StressKernel {
     /// [`Error::OutOfRange`] if the depth and the layers are too thin for cells that repeat.
     pub(super) fn of_layers(domain: Domain, below: &Below<'_>, z: f64) -> Result<Self, Error> {
         let (grid, between) = (&domain.grid, domain.between);
-        let poisson = below.added_to();
-        let response = Response::new(Load::Normal, poisson.unwrap_or_default());
-        let half_space = poisson.map(|_| Self::new(domain, response, z)).transpose()?;
+        let poissons_ratio = below.added_to();
+        let response = Response::new(Load::Normal, poissons_ratio.unwrap_or_default());
+        let half_space = poissons_ratio.map(|_| Self::new(domain, response, z)).transpose()?;
         let table = if domain.boundary == Boundary::Free {
             let mut values = below.cells(grid);
             if let Some(Self { table: Table::Free(others), .. }) = &half_space {

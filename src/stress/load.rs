@@ -26,15 +26,15 @@ pub(super) enum Load {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Response {
     load: Load,
-    poisson: f64,
+    poissons_ratio: f64,
     terms: [[(Cosines, (f64, f64)); 2]; COMPONENTS],
 }
 
 impl Response {
-    pub(super) fn new(load: Load, poisson: f64) -> Self {
+    pub(super) fn new(load: Load, poissons_ratio: f64) -> Self {
         use Cosines::{One, X, Xx, Xxy, Xy, Xyy, Y};
         const NONE: (Cosines, (f64, f64)) = (One, (0.0, 0.0));
-        let nu = poisson;
+        let nu = poissons_ratio;
         let shear = 1.0 - 2.0 * nu;
         let terms = match load {
             Load::Normal => [
@@ -62,7 +62,7 @@ impl Response {
                 [(X, (1.0, 0.0)), (Xyy, (-2.0 * nu, -1.0))],
             ],
         };
-        Self { load, poisson, terms }
+        Self { load, poissons_ratio, terms }
     }
 
     /// All components, from the values of the products.
@@ -72,7 +72,7 @@ impl Response {
 
     /// Under a load that is uniform everywhere, on a body that repeats with a given period: it cannot expand sideways.
     pub(super) fn uniform(&self) -> [f64; COMPONENTS] {
-        let sideways = -self.poisson / (1.0 - self.poisson);
+        let sideways = -self.poissons_ratio / (1.0 - self.poissons_ratio);
         match self.load {
             Load::Normal => [sideways, sideways, -1.0, 0.0, 0.0, 0.0],
             Load::AlongX => [0.0, 0.0, 0.0, 0.0, -1.0, 0.0],
@@ -112,7 +112,7 @@ impl Response {
             Load::AlongX => Load::AlongY,
             Load::AlongY => Load::AlongX,
         };
-        Self::new(load, self.poisson)
+        Self::new(load, self.poissons_ratio)
     }
 }
 

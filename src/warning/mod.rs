@@ -206,20 +206,27 @@ impl Warning {
     /// layer on a rigid base 0.5, 2 and 4 %.
     #[must_use]
     pub fn of_layers(body: &LayeredBody, grid: &Grid) -> Option<Self> {
-        let modulus = |young: f64, poisson: f64| young / (1.0 - poisson * poisson);
+        let modulus = |youngs_modulus: f64, poissons_ratio: f64| {
+            youngs_modulus / (1.0 - poissons_ratio * poissons_ratio)
+        };
         let first = body.layers().first()?;
-        let surface = modulus(first.young, first.poisson);
-        let is_like = |young, poisson| {
-            let ratio = modulus(young, poisson) / surface;
+        let surface = modulus(first.youngs_modulus, first.poissons_ratio);
+        let is_like = |youngs_modulus, poissons_ratio| {
+            let ratio = modulus(youngs_modulus, poissons_ratio) / surface;
             (1.0 / LIKE..=LIKE).contains(&ratio)
         };
-        let like = body.layers().iter().take_while(|layer| is_like(layer.young, layer.poisson));
+        let like = body
+            .layers()
+            .iter()
+            .take_while(|layer| is_like(layer.youngs_modulus, layer.poissons_ratio));
         let (count, thickness) =
             like.fold((0, 0.0), |(n, sum), layer| (n + 1, sum + layer.thickness));
         let ends = count < body.layers().len()
             || match body.base() {
                 Base::Rigid => true,
-                Base::HalfSpace { young, poisson } => !is_like(young, poisson),
+                Base::HalfSpace { youngs_modulus, poissons_ratio } => {
+                    !is_like(youngs_modulus, poissons_ratio)
+                }
             };
         let cell = grid.dx().max(grid.dy());
         // Of cells as wide as the coat is thick, but for rounding of the sides, there is none.

@@ -179,13 +179,14 @@ fn pressures_that_solids_do_not_bear_are_noticed() {
 #[test]
 fn cells_wider_than_a_coat_are_noticed() -> Result<(), Error> {
     let of = |layers: &[(f64, f64)], base, dx, dy| -> Result<_, Error> {
-        let layer = |(young, thickness)| Layer { young, poisson: 0.3, thickness };
+        let layer =
+            |(youngs_modulus, thickness)| Layer { youngs_modulus, poissons_ratio: 0.3, thickness };
         let layers: Vec<_> = layers.iter().copied().map(layer).collect();
         let body = LayeredBody::new(&layers, base)?;
         Ok(Warning::of_layers(&body, &Grid::new(4, 4, dx, dy)?))
     };
     let wide = Warning::WideCells { cell: 3e-6, thickness: 2e-6 };
-    let steel = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+    let steel = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
     for (layers, base, dy, expected) in [
         (vec![(3e9, 2e-6)], Base::Rigid, 3e-6, Some(wide)),
         (vec![(3e9, 2e-6)], Base::Rigid, 2e-6, None),

@@ -23,7 +23,7 @@ pub(crate) struct Below<'a> {
     /// The layer, and the distances to its upper and its lower side; `None` in the base.
     layer: Option<(usize, f64, f64)>,
     /// Poisson's ratio there.
-    poisson: f64,
+    poissons_ratio: f64,
     /// Whether the half-space of the uppermost layer is taken off.
     is_difference: bool,
     /// Waves fade with this depth.
@@ -62,20 +62,20 @@ impl<'a> Below<'a> {
             }
             top = bottom;
         }
-        let poisson = match (layer, body.base()) {
-            (Some((place, ..)), _) => body.layers()[place].poisson,
-            (None, Base::HalfSpace { poisson, .. }) => poisson,
+        let poissons_ratio = match (layer, body.base()) {
+            (Some((place, ..)), _) => body.layers()[place].poissons_ratio,
+            (None, Base::HalfSpace { poissons_ratio, .. }) => poissons_ratio,
             (None, Base::Rigid) => return None,
         };
         let is_difference = matches!(layer, Some((0, ..)));
         let scale = if is_difference { 2.0 * body.top_thickness() - z } else { z };
-        Some(Self { body, z, layer, poisson, is_difference, scale })
+        Some(Self { body, z, layer, poissons_ratio, is_difference, scale })
     }
 
     /// Whether what is found has to be added to the half-space of the uppermost layer, and Poisson's ratio of that.
     pub(crate) fn added_to(&self) -> Option<f64> {
         let top = self.body.layers().first().filter(|_| self.is_difference);
-        top.map(|layer| layer.poisson)
+        top.map(|layer| layer.poissons_ratio)
     }
 
     /// Waves fade as exp(−q times this).
@@ -85,7 +85,7 @@ impl<'a> Below<'a> {
 
     /// Under a uniform pressure of 1, of a body that cannot expand sideways.
     pub(crate) fn uniform(&self) -> Stresses {
-        let sideways = -self.poisson / (1.0 - self.poisson);
+        let sideways = -self.poissons_ratio / (1.0 - self.poissons_ratio);
         match self.is_difference {
             true => [0.0; 6],
             false => [sideways, sideways, -1.0, 0.0, 0.0, 0.0],
@@ -95,7 +95,7 @@ impl<'a> Below<'a> {
     /// Under a wave of pressure of 1 along (cx, cy): σyz and σxz over i.
     pub(crate) fn of_wave(&self, q: f64, (cx, cy): (f64, f64)) -> Stresses {
         let InPlane { pressure, shear, along } = self.in_plane(q);
-        let across = self.poisson * (along - pressure);
+        let across = self.poissons_ratio * (along - pressure);
         let excess = along - across;
         [
             across + excess * cx * cx,
@@ -126,15 +126,15 @@ impl<'a> Below<'a> {
         const ALL: Block = [[1.0, 0.0], [0.0, 1.0]];
         let mut below = match self.body.base() {
             Base::Rigid => Compliance::RIGID,
-            Base::HalfSpace { young, poisson } => {
-                Compliance::half_space(Material::new(young, poisson))
+            Base::HalfSpace { youngs_modulus, poissons_ratio } => {
+                Compliance::half_space(Material::new(youngs_modulus, poissons_ratio))
             }
         };
         let mut down = ALL;
         // Compliance and material at the depth.
         let mut there = None;
         for (place, layer) in self.body.layers().iter().enumerate().rev() {
-            let material = Material::new(layer.young, layer.poisson);
+            let material = Material::new(layer.youngs_modulus, layer.poissons_ratio);
             match self.layer {
                 Some((own, ..)) if own < place => {
                     below = below.under(material, q * layer.thickness);
@@ -186,7 +186,7 @@ struct Field {
 impl Field {
     /// Up to a distance.
     fn new(below: &Below<'_>, reach: f64) -> Self {
-        let across = |s: &InPlane| below.poisson * (s.along - s.pressure);
+        let across = |s: &InPlane| below.poissons_ratio * (s.along - s.pressure);
         let first = first_variation(below.body).min(0.1 / below.scale);
         let widest = 1.0 / (below.body.top_thickness() + below.z);
         let end = FADED / below.scale;

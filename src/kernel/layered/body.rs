@@ -8,9 +8,11 @@ use crate::{Error, plane_strain_modulus};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layer {
     /// Young's modulus E \[Pa\].
-    pub young: f64,
+    #[cfg_attr(feature = "serde", serde(alias = "young"))]
+    pub youngs_modulus: f64,
     /// Poisson's ratio ν, above −1 and at most ½.
-    pub poisson: f64,
+    #[cfg_attr(feature = "serde", serde(alias = "poisson"))]
+    pub poissons_ratio: f64,
     /// Thickness h \[m\].
     pub thickness: f64,
 }
@@ -24,9 +26,11 @@ pub enum Base {
     /// An elastic half-space.
     HalfSpace {
         /// Young's modulus E \[Pa\].
-        young: f64,
+        #[cfg_attr(feature = "serde", serde(alias = "young"))]
+        youngs_modulus: f64,
         /// Poisson's ratio ν, above −1 and at most ½.
-        poisson: f64,
+        #[cfg_attr(feature = "serde", serde(alias = "poisson"))]
+        poissons_ratio: f64,
     },
 }
 
@@ -68,8 +72,8 @@ pub enum Base {
 /// use asperity::kernel::{Base, Layer, LayeredBody};
 ///
 /// // 5 µm of titanium nitride on steel.
-/// let coat = Layer { young: 450e9, poisson: 0.25, thickness: 5e-6 };
-/// let steel = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+/// let coat = Layer { youngs_modulus: 450e9, poissons_ratio: 0.25, thickness: 5e-6 };
+/// let steel = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
 /// let body = LayeredBody::new(&[coat], steel)?;
 /// // Waves of 1 mm hardly see the coat, waves of 1 µm nothing else.
 /// let modulus = |wavelength: f64| {
@@ -108,11 +112,11 @@ impl LayeredBody {
         Error::require_positive("number of layers", layers.len() as f64)?;
         let (mut moduli, mut thicknesses) = (Range::default(), Range::default());
         for layer in layers {
-            moduli.add(plane_strain_modulus(layer.young, layer.poisson)?);
+            moduli.add(plane_strain_modulus(layer.youngs_modulus, layer.poissons_ratio)?);
             thicknesses.add(Error::require_positive("thickness of a layer", layer.thickness)?);
         }
-        if let Base::HalfSpace { young, poisson } = base {
-            moduli.add(plane_strain_modulus(young, poisson)?);
+        if let Base::HalfSpace { youngs_modulus, poissons_ratio } = base {
+            moduli.add(plane_strain_modulus(youngs_modulus, poissons_ratio)?);
         }
         moduli.check("greatest modulus of a layer or the base over the least")?;
         thicknesses.check("greatest thickness of a layer over the least")?;
@@ -187,8 +191,8 @@ impl LayeredBody {
             return None;
         }
         let of_layer = |layer: &Layer| {
-            let nu = layer.poisson;
-            layer.thickness * (1.0 + nu) * (1.0 - 2.0 * nu) / (layer.young * (1.0 - nu))
+            let nu = layer.poissons_ratio;
+            layer.thickness * (1.0 + nu) * (1.0 - 2.0 * nu) / (layer.youngs_modulus * (1.0 - nu))
         };
         Some(self.layers.iter().map(of_layer).sum())
     }
@@ -197,12 +201,12 @@ impl LayeredBody {
     pub(super) fn reduced_compliance(&self, q: f64) -> f64 {
         let mut below = match self.base {
             Base::Rigid => Compliance::RIGID,
-            Base::HalfSpace { young, poisson } => {
-                Compliance::half_space(Material::new(young, poisson))
+            Base::HalfSpace { youngs_modulus, poissons_ratio } => {
+                Compliance::half_space(Material::new(youngs_modulus, poissons_ratio))
             }
         };
         for layer in self.layers.iter().rev() {
-            let material = Material::new(layer.young, layer.poisson);
+            let material = Material::new(layer.youngs_modulus, layer.poissons_ratio);
             below = below.under(material, q * layer.thickness);
         }
         below.normal()
@@ -212,18 +216,24 @@ impl LayeredBody {
     /// whose Poisson's ratio is near −1.
     pub(super) fn softest_over_stiffest(&self) -> f64 {
         let mut moduli = Range::default();
-        let mut add = |young, poisson| moduli.add(Material::new(young, poisson).shear);
-        self.layers.iter().for_each(|layer| add(layer.young, layer.poisson));
-        if let Base::HalfSpace { young, poisson } = self.base {
-            add(young, poisson);
+        let mut add = |youngs_modulus, poissons_ratio| {
+            moduli.add(Material::new(youngs_modulus, poissons_ratio).shear)
+        };
+        self.layers.iter().for_each(|layer| add(layer.youngs_modulus, layer.poissons_ratio));
+        if let Base::HalfSpace { youngs_modulus, poissons_ratio } = self.base {
+            add(youngs_modulus, poissons_ratio);
         }
         moduli.0 / moduli.1
     }
 
     /// Plane-strain modulus of the uppermost layer \[Pa\].
     pub(super) fn top_modulus(&self) -> f64 {
-        let plane_strain = |young: f64, poisson: f64| young / (1.0 - poisson * poisson);
-        self.layers.first().map_or(f64::NAN, |top| plane_strain(top.young, top.poisson))
+        let plane_strain = |youngs_modulus: f64, poissons_ratio: f64| {
+            youngs_modulus / (1.0 - poissons_ratio * poissons_ratio)
+        };
+        self.layers
+            .first()
+            .map_or(f64::NAN, |top| plane_strain(top.youngs_modulus, top.poissons_ratio))
     }
 
     /// Thickness of the uppermost layer \[m\].

@@ -29,17 +29,17 @@
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Material {
     pub(super) shear: f64,
-    poisson: f64,
+    poissons_ratio: f64,
 }
 
 impl Material {
-    pub(super) fn new(young: f64, poisson: f64) -> Self {
-        Self { shear: 0.5 * young / (1.0 + poisson), poisson }
+    pub(super) fn new(youngs_modulus: f64, poissons_ratio: f64) -> Self {
+        Self { shear: 0.5 * youngs_modulus / (1.0 + poissons_ratio), poissons_ratio }
     }
 
     /// Stress along a wave, from the displacement along it times 2q and the pressure on planes of constant depth.
     pub(super) fn along(self, displacement: f64, pressure: f64) -> f64 {
-        (self.shear * displacement - self.poisson * pressure) / (1.0 - self.poisson)
+        (self.shear * displacement - self.poissons_ratio * pressure) / (1.0 - self.poissons_ratio)
     }
 }
 
@@ -66,7 +66,7 @@ impl Compliance {
 
     /// That of a half-space.
     pub(super) fn half_space(material: Material) -> Self {
-        let nu = material.poisson;
+        let nu = material.poissons_ratio;
         let (own, other) = (2.0 * (1.0 - nu), 2.0 * nu - 1.0);
         Self([[own, other], [other, own]]).scaled(1.0 / material.shear)
     }
@@ -77,7 +77,7 @@ impl Compliance {
             return Self::half_space(material);
         }
         let steps = (x / STEP).ceil().max(1.0);
-        let transfer = Transfer::new(material.poisson, x / steps);
+        let transfer = Transfer::new(material.poissons_ratio, x / steps);
         let mut own = self.scaled(material.shear);
         for _ in 0..steps as usize {
             own = transfer.applied(own);
@@ -91,7 +91,7 @@ impl Compliance {
             return (Self::half_space(material), [[0.0; 2]; 2]);
         }
         let steps = (x / STEP).ceil().max(1.0);
-        let transfer = Transfer::new(material.poisson, x / steps);
+        let transfer = Transfer::new(material.poissons_ratio, x / steps);
         let (mut own, mut down) = (self.scaled(material.shear), down);
         for _ in 0..steps as usize {
             let (above, inverse) = transfer.with_traction(own);
@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn a_half_space_on_a_half_space_is_one() {
         for nu in [-0.9, 0.0, 0.3, 0.5] {
-            let material = Material { shear: 2.0, poisson: nu };
+            let material = Material { shear: 2.0, poissons_ratio: nu };
             let below = Compliance::half_space(material);
             for x in [1e-6, 0.1, 1.0, 3.9, 4.1, 25.0, 27.0] {
                 let above = below.under(material, x);

@@ -76,7 +76,7 @@ use crate::{Error, Grid};
 /// use asperity::surface::Paraboloid;
 /// use asperity::{FixedLoadSolver, Grid};
 ///
-/// let rubber = Layer { young: 3e6, poisson: 0.5, thickness: 1e-3 };
+/// let rubber = Layer { youngs_modulus: 3e6, poissons_ratio: 0.5, thickness: 1e-3 };
 /// let body = LayeredBody::new(&[rubber], Base::Rigid)?;
 /// let kernel = Layered::free(Grid::square(64, 8e-3)?, body)?;
 /// let solution = FixedLoadSolver::new(&Paraboloid::new(20e-3)?, &kernel)?.solve(1.0)?;

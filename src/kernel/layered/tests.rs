@@ -25,16 +25,20 @@ impl Draw {
     }
 }
 
-fn layer(young: f64, poisson: f64, thickness: f64) -> Layer {
-    Layer { young, poisson, thickness }
+fn layer(youngs_modulus: f64, poissons_ratio: f64, thickness: f64) -> Layer {
+    Layer { youngs_modulus, poissons_ratio, thickness }
 }
 
-fn half_space(young: f64, poisson: f64) -> Base {
-    Base::HalfSpace { young, poisson }
+fn half_space(youngs_modulus: f64, poissons_ratio: f64) -> Base {
+    Base::HalfSpace { youngs_modulus, poissons_ratio }
 }
 
-fn on_rigid(young: f64, poisson: f64, thickness: f64) -> Result<LayeredBody, Error> {
-    LayeredBody::new(&[layer(young, poisson, thickness)], Base::Rigid)
+fn on_rigid(
+    youngs_modulus: f64,
+    poissons_ratio: f64,
+    thickness: f64,
+) -> Result<LayeredBody, Error> {
+    LayeredBody::new(&[layer(youngs_modulus, poissons_ratio, thickness)], Base::Rigid)
 }
 
 /// Bodies of every kind: soft and stiff coats, thin and thick, on a rigid base, of several layers.
@@ -57,7 +61,7 @@ fn bodies(thickness: f64) -> Result<Vec<LayeredBody>, Error> {
 fn one_layer_is_the_closed_form() -> Result<(), Error> {
     let mut draw = Draw::new();
     for case in 0..600 {
-        let (young, other) = (draw.power(-2.0, 2.0), draw.power(-2.0, 2.0));
+        let (youngs_modulus, other) = (draw.power(-2.0, 2.0), draw.power(-2.0, 2.0));
         let (nu, below) = (draw.between(-0.9, 0.5), draw.between(-0.9, 0.5));
         let (h, x) = (draw.power(-6.0, 1.0), draw.power(-2.0, 1.7));
         let (base, substrate) = if case % 3 == 0 {
@@ -65,13 +69,13 @@ fn one_layer_is_the_closed_form() -> Result<(), Error> {
         } else {
             (half_space(other, below), Some((other, below)))
         };
-        let body = LayeredBody::new(&[layer(young, nu, h)], base)?;
-        let exact = layer_compliance(x / h, (young, nu, h), substrate)?;
+        let body = LayeredBody::new(&[layer(youngs_modulus, nu, h)], base)?;
+        let exact = layer_compliance(x / h, (youngs_modulus, nu, h), substrate)?;
         let found = body.compliance(x / h);
         // Both err by some 2e-14; the formula by 1e-16/x for x of 0.01.
         assert!((found / exact - 1.0).abs() < 1e-13, "{case} {x}: {found} {exact}");
         // The same layer in slices.
-        let slices = [0.1, 0.5, 0.15, 0.25].map(|part| layer(young, nu, part * h));
+        let slices = [0.1, 0.5, 0.15, 0.25].map(|part| layer(youngs_modulus, nu, part * h));
         let sliced = LayeredBody::new(&slices, base)?.compliance(x / h);
         assert!((sliced / exact - 1.0).abs() < 1e-13, "{case} {x}: {sliced} {exact}");
     }
@@ -82,8 +86,8 @@ fn one_layer_is_the_closed_form() -> Result<(), Error> {
 #[test]
 fn several_layers_solve_the_boundary_value_problem() -> Result<(), Error> {
     /// Pressure, shear traction, displacements along and into the body of an Airy function with this derivatives.
-    fn state(f: [f64; 4], q: f64, (young, nu): (f64, f64)) -> [f64; 4] {
-        let twice_shear = young / (1.0 + nu);
+    fn state(f: [f64; 4], q: f64, (youngs_modulus, nu): (f64, f64)) -> [f64; 4] {
+        let twice_shear = youngs_modulus / (1.0 + nu);
         [
             -q * q * f[0],
             q * f[1],
@@ -111,7 +115,7 @@ fn several_layers_solve_the_boundary_value_problem() -> Result<(), Error> {
         // Depth counted from the upper side of each material.
         let functions = [(-q, false), (-q, true), (q, false), (q, true)];
         for (i, own) in layers.iter().enumerate() {
-            let material = (own.young, own.poisson);
+            let material = (own.youngs_modulus, own.poissons_ratio);
             for (j, &(s, linear)) in functions.iter().enumerate() {
                 let upper = state(airy(s, 0.0, linear), q, material);
                 let lower = state(airy(s, own.thickness, linear), q, material);
@@ -136,7 +140,7 @@ fn several_layers_solve_the_boundary_value_problem() -> Result<(), Error> {
         let Some(solution) = matrix.lu().solve(&rhs) else {
             return Err(Error::OutOfRange { quantity: "q", value: q, expected: "regular" });
         };
-        let top = (layers[0].young, layers[0].poisson);
+        let top = (layers[0].youngs_modulus, layers[0].poissons_ratio);
         let displacement: f64 = functions
             .iter()
             .enumerate()
@@ -152,11 +156,12 @@ fn several_layers_solve_the_boundary_value_problem() -> Result<(), Error> {
 
 #[test]
 fn limits_of_the_symbol() -> Result<(), Error> {
-    let (young, nu, h) = (3.0, 0.3, 0.01);
-    let shear = young / (2.0 * (1.0 + nu));
-    let e_star = young / (1.0 - nu * nu);
-    let homogeneous = LayeredBody::new(&[layer(young, nu, h)], half_space(young, nu))?;
-    let soft = LayeredBody::new(&[layer(0.1, 0.4, h)], half_space(young, nu))?;
+    let (youngs_modulus, nu, h) = (3.0, 0.3, 0.01);
+    let shear = youngs_modulus / (2.0 * (1.0 + nu));
+    let e_star = youngs_modulus / (1.0 - nu * nu);
+    let homogeneous =
+        LayeredBody::new(&[layer(youngs_modulus, nu, h)], half_space(youngs_modulus, nu))?;
+    let soft = LayeredBody::new(&[layer(0.1, 0.4, h)], half_space(youngs_modulus, nu))?;
     let soft_star = 0.1 / (1.0 - 0.16);
     for q in [1e-3, 1.0, 100.0, 1e4, 1e9] {
         // Thirty roundings.
@@ -172,16 +177,16 @@ fn limits_of_the_symbol() -> Result<(), Error> {
     // Thin on a rigid base: h (1 − 2ν) / (2 G (1 − ν)), and h³ q² / (3 G) if incompressible; the next orders are (q
     // h)².
     for x in [1e-6, 1e-4, 1e-2] {
-        let compressible = on_rigid(young, nu, h)?;
+        let compressible = on_rigid(youngs_modulus, nu, h)?;
         let uniform = h * (1.0 - 2.0 * nu) / (2.0 * shear * (1.0 - nu));
         let mean = compressible.mean_compliance().unwrap_or(f64::NAN);
         assert!((mean / uniform - 1.0).abs() < 1e-15);
         assert_eq!(compressible.compliance(0.0), mean);
         let ratio = compressible.compliance(x / h) / uniform;
         assert!((ratio - 1.0).abs() < 2.0 * x * x + 1e-15, "{x}: {ratio}");
-        let film = on_rigid(young, 0.5, h)?;
+        let film = on_rigid(youngs_modulus, 0.5, h)?;
         assert_eq!(film.mean_compliance(), Some(0.0));
-        let ratio = film.compliance(x / h) / (h * x * x / young);
+        let ratio = film.compliance(x / h) / (h * x * x / youngs_modulus);
         assert!((ratio - 1.0).abs() < 2.0 * x * x + 1e-15, "{x}: {ratio}");
     }
     // A base that is nearly rigid.
@@ -207,17 +212,19 @@ fn bad_layers_are_refused() -> Result<(), Error> {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let thickness = make(Layer { thickness: bad, ..good }, Base::Rigid);
         assert!(matches!(thickness, Err(Error::NotPositive { .. })), "{thickness:?}");
-        for refused in
-            [make(Layer { young: bad, ..good }, Base::Rigid), make(good, half_space(bad, 0.3))]
-        {
+        for refused in [
+            make(Layer { youngs_modulus: bad, ..good }, Base::Rigid),
+            make(good, half_space(bad, 0.3)),
+        ] {
             assert!(refused.is_err());
         }
         assert!(make(good, Base::Rigid)?.against(bad).is_err());
     }
     for bad in [-1.0, 0.51, f64::NAN, f64::NEG_INFINITY] {
-        for refused in
-            [make(Layer { poisson: bad, ..good }, Base::Rigid), make(good, half_space(1.0, bad))]
-        {
+        for refused in [
+            make(Layer { poissons_ratio: bad, ..good }, Base::Rigid),
+            make(good, half_space(1.0, bad)),
+        ] {
             assert!(matches!(refused, Err(Error::OutOfRange { .. })), "{refused:?}");
         }
     }
@@ -496,7 +503,7 @@ fn promises_are_those_of_the_body() -> Result<(), Error> {
                 // do not.
                 let rings = matches!(kernel.origin(), KernelOrigin::SpectralLayered { .. })
                     && body.compliance(0.505 * TAU) > body.compliance(0.5 * TAU)
-                    && body.layers()[0].poisson > 0.49;
+                    && body.layers()[0].poissons_ratio > 0.49;
                 let grows = kernel.contact_growth() >= ContactGrowth::Monotone;
                 assert_eq!(grows, !rings, "{body:?}");
                 check(&kernel)?;
@@ -527,16 +534,16 @@ fn very_thin_coats_and_single_nodes() -> Result<(), Error> {
     let grid = Grid::new(6, 5, 1.0, 1.0)?;
     let steel = half_space(1.0, 0.3);
     let bare = PeriodicBoussinesq::new(grid, 1.0 / (1.0 - 0.09))?.with_gauge(0.0)?;
-    for young in [0.1, 10.0] {
+    for youngs_modulus in [0.1, 10.0] {
         let of_coat = |h: f64| -> Result<f64, Error> {
-            let body = LayeredBody::new(&[layer(young, 0.2, h)], steel)?;
+            let body = LayeredBody::new(&[layer(youngs_modulus, 0.2, h)], steel)?;
             let values = periodic::cells(&grid, &body, 0.0)?.inverse_transform();
             Ok(values.at(0, 0) - bare.coefficient(0, 0))
         };
         let [thick, thin, least] = [of_coat(2e-4)?, of_coat(1e-4)?, of_coat(1e-6)?];
         // The next order, h² ln h, is 10⁻³ of the first; what is left of 10⁻⁶ has ten digits.
-        assert!((thick / thin - 2.0).abs() < 1e-2, "{young}: {thick:e} {thin:e}");
-        assert!((thin / least / 100.0 - 1.0).abs() < 1e-2, "{young}: {thin:e} {least:e}");
+        assert!((thick / thin - 2.0).abs() < 1e-2, "{youngs_modulus}: {thick:e} {thin:e}");
+        assert!((thin / least / 100.0 - 1.0).abs() < 1e-2, "{youngs_modulus}: {thin:e} {least:e}");
     }
     let single = Grid::new(1, 1, 2.0, 1.0)?;
     for body in bodies(0.4)? {

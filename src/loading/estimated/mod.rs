@@ -215,7 +215,8 @@ impl Estimated {
         let approach = run.scalars.approach();
         let [_, slack] = slacks(run, (&run.problem, &run.contact), tolerances, approach);
         self.left = slack.excess;
-        self.survey_within(run, Slack { gap: slack.gap + late, ..slack })
+        let gap = (slack.gap + late).max(run.inherited_slack());
+        self.survey_within(run, Slack { gap, ..slack })
     }
 
     /// The same with these bounds for what contradicts contact that grows.
