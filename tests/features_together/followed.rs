@@ -3,7 +3,6 @@
 use asperity::bed::Bed;
 use asperity::creep::{Creep, PiecewiseLinear, Prony, Relaxation};
 use asperity::joint::{Conduction, InterfaceRow, InterfaceTable};
-use asperity::kernel::Theory;
 use asperity::leak::Seal;
 use asperity::patches::{Connectivity, PatchHistory, Patches, Percolation};
 use asperity::slip::{Friction, PartialSlip, SlipZone};
@@ -404,7 +403,6 @@ pub(super) fn conductance(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let name = pressed.row.name;
     let history = pressed.conducting()?;
     let body = history.layering();
-    body.check(Theory::Conductance)?;
     // Of one that repeats along one side the approach is counted from where one likes.
     let in_a_row = pressed.row.kernel.boundary().repeats() != [false; 2];
     let heat = Conduction::thermal(E_STAR, RESISTIVITY)?;

@@ -34,7 +34,7 @@ pub(super) struct Row {
     /// Without a factor.
     pub(super) iterative: bool,
     /// Interrupted, and continued from its record.
-    resumed: bool,
+    pub(super) resumed: bool,
     /// The area fraction at which it ends, unless it goes on to the end.
     until: Option<f64>,
 }
@@ -123,12 +123,13 @@ pub(super) fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
 }
 
 /// A sheet on a rigid base, a soft layer and a stiff one.
-fn bodies() -> [LayeredBody; 3] {
-    let steel = Base::HalfSpace { young: 210e9, poisson: 0.3 };
-    let rubber = Base::HalfSpace { young: 3e9, poisson: 0.3 };
+pub(super) fn bodies() -> [LayeredBody; 3] {
+    let steel = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
+    let rubber = Base::HalfSpace { youngs_modulus: 3e9, poissons_ratio: 0.3 };
     [(E_STAR, 6e-5, Base::Rigid), (50e9, 4e-5, steel), (210e9, 2e-5, rubber)].map(
-        |(young, thickness, base)| {
-            LayeredBody::new(&[Layer { young, poisson: 0.3, thickness }], base).unwrap()
+        |(youngs_modulus, thickness, base)| {
+            LayeredBody::new(&[Layer { youngs_modulus, poissons_ratio: 0.3, thickness }], base)
+                .unwrap()
         },
     )
 }

@@ -11,10 +11,11 @@ use asperity::{Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver};
 
 use super::rough;
 
-const STEEL: Base = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+const STEEL: Base = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
 
-fn body(young: f64, base: Base) -> LayeredBody {
-    LayeredBody::new(&[Layer { young, poisson: 0.3, thickness: 2e-4 }], base).unwrap()
+fn body(youngs_modulus: f64, base: Base) -> LayeredBody {
+    LayeredBody::new(&[Layer { youngs_modulus, poissons_ratio: 0.3, thickness: 2e-4 }], base)
+        .unwrap()
 }
 
 fn record(kernel: &dyn InfluenceKernel) -> LoadingRecord {
@@ -25,8 +26,9 @@ fn record(kernel: &dyn InfluenceKernel) -> LoadingRecord {
     LoadingRecord::new(&path, history).unwrap()
 }
 
-/// Whether each is refused: slip in both ways, creep in three, bounds, and tables with conductance and with friction.
-fn refused(record: &LoadingRecord) -> [bool; 8] {
+/// Whether each is refused: slip in both ways, creep in three, bounds, tables with conductance and with friction, and
+/// the conductances of a state in both ways.
+fn refused(record: &LoadingRecord) -> [bool; 10] {
     fn is_refused<T>(result: Result<T, Error>) -> bool {
         match result {
             Ok(_) => false,
@@ -54,6 +56,8 @@ fn refused(record: &LoadingRecord) -> [bool; 8] {
         is_refused(heat.bounds(history, 1e-8)),
         is_refused(table().conduction(heat).build()),
         is_refused(table().friction(0.3, 1.2).build()),
+        is_refused(heat.of(&history.states()[5].contact, history.layering())),
+        is_refused(heat.of_interface(&history.states()[5].contact, history.layering())),
     ]
 }
 
@@ -63,17 +67,17 @@ fn theories_of_half_spaces_are_refused_on_layers() {
     let free = |body| Layered::free(grid, body).unwrap();
     let coat = record(&free(body(50e9, STEEL)));
     assert_eq!(coat.history().layering(), Layering::Several);
-    assert_eq!(refused(&coat), [true; 8]);
+    assert_eq!(refused(&coat), [true; 10]);
     // One material on a rigid base creeps as a whole.
     let alone = record(&free(body(3e6, Base::Rigid)));
     assert_eq!(alone.history().layering(), Layering::OneMaterial);
-    assert_eq!(refused(&alone), [true, true, false, false, false, true, true, true]);
+    assert_eq!(refused(&alone), [true, true, false, false, false, true, true, true, true, true]);
     let half_space = record(&Boussinesq::new(grid, 1e11).unwrap());
     assert_eq!(half_space.history().layering(), Layering::HalfSpace);
-    assert_eq!(refused(&half_space), [false; 8]);
+    assert_eq!(refused(&half_space), [false; 10]);
     // A layer on its own material is none.
     let same = record(&free(body(210e9, STEEL)));
-    assert_eq!(refused(&same), [false; 8]);
+    assert_eq!(refused(&same), [false; 10]);
     // Parts of a path are of the same body; of states alone nothing is known.
     let targets = [asperity::ContactTarget::Load(0.5 * coat.states().last().unwrap().contact.load)];
     let (part, _) = coat.history().ending_at(&grid, &targets).unwrap();
@@ -89,7 +93,8 @@ fn theories_of_half_spaces_are_refused_on_layers() {
 fn one_material_on_a_rigid_base_answers_in_proportion() {
     let grid = Grid::square(16, 1.3e-3).unwrap();
     let worst = |base: Base| {
-        let [soft, stiff] = [3e6, 6e6].map(|young| Layered::free(grid, body(young, base)).unwrap());
+        let [soft, stiff] = [3e6, 6e6]
+            .map(|youngs_modulus| Layered::free(grid, body(youngs_modulus, base)).unwrap());
         let offsets = (0..16).flat_map(|i| (0..16).map(move |j| (i, j)));
         let scale = soft.coefficient(0, 0);
         let errors = offsets
@@ -97,6 +102,6 @@ fn one_material_on_a_rigid_base_answers_in_proportion() {
         errors.fold(0.0, f64::max)
     };
     assert!(worst(Base::Rigid) < 1e-9, "{:e}", worst(Base::Rigid));
-    let soft_base = Base::HalfSpace { young: 1e6, poisson: 0.3 };
+    let soft_base = Base::HalfSpace { youngs_modulus: 1e6, poissons_ratio: 0.3 };
     assert!(worst(soft_base) > 1e-2, "{:e}", worst(soft_base));
 }

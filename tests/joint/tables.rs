@@ -327,8 +327,8 @@ fn gaps_that_open_are_coped_with_or_named() {
     }
     // A stiff coat on a soft base, pressed by asperities far from each other, becomes a dish.
     let grid = Grid::square(32, 1.25e-3).unwrap();
-    let glass = Layer { young: 70e9, poisson: 0.22, thickness: 2e-4 };
-    let base = Base::HalfSpace { young: 3e6, poisson: 0.49 };
+    let glass = Layer { youngs_modulus: 70e9, poissons_ratio: 0.22, thickness: 2e-4 };
+    let base = Base::HalfSpace { youngs_modulus: 3e6, poissons_ratio: 0.49 };
     let coat = Layered::free(grid, LayeredBody::new(&[glass], base).unwrap()).unwrap();
     let path = history(&rough(), &coat, 0.1);
     let is_negative = |state: &&LoadingState| state.contact.interfacial_stiffness < Some(0.0);

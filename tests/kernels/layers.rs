@@ -15,11 +15,13 @@ fn the_layer_of_contact_mechanics() {
     let lines = numbers(include_str!("../data/layers_contact_mechanics.csv"));
     assert_eq!(lines.len(), 30);
     for line in lines {
-        let [nx, ny, lx, ly, thickness, young, poisson, kx, ky, expected] = line[..] else {
+        let [nx, ny, lx, ly, thickness, youngs_modulus, poissons_ratio, kx, ky, expected] =
+            line[..]
+        else {
             panic!("{line:?}");
         };
         let grid = Grid::with_sides(nx as usize, ny as usize, lx, ly).unwrap();
-        let layer = Layer { young, poisson, thickness };
+        let layer = Layer { youngs_modulus, poissons_ratio, thickness };
         let body = LayeredBody::new(&[layer], Base::Rigid).unwrap();
         let (qx, qy) = grid.wave_vector(kx as usize, ky as usize);
         let found = body.compliance(qx.hypot(qy));
@@ -38,16 +40,30 @@ fn the_layer_of_contact_mechanics() {
     }
 }
 
+/// The other body adds what a half-space gives way by, 2/(E* q).
+#[test]
+fn a_counterpart_gives_way_beside_the_layers() {
+    let layer = Layer { youngs_modulus: 2.0, poissons_ratio: 0.3, thickness: 0.4 };
+    let rigid = LayeredBody::new(&[layer], Base::Rigid).unwrap();
+    let elastic = rigid.clone().against(5.0).unwrap();
+    assert_eq!([rigid.counterpart(), elastic.counterpart()], [None, Some(5.0)]);
+    for q in [0.1, 1.0, 30.0] {
+        let added = elastic.compliance(q) - rigid.compliance(q);
+        assert!((added / (2.0 / (5.0 * q)) - 1.0).abs() < 1e-13, "{q}: {added}");
+    }
+}
+
 #[test]
 fn cells_by_quadrature_over_all_waves() {
     let grid = Grid::square(8, 8.0).unwrap();
     let lines = numbers(include_str!("../data/layers_free.csv"));
     assert_eq!(lines.len(), 49);
     for case in lines.chunks(7) {
-        let layer = Layer { young: case[0][0], poisson: case[0][1], thickness: case[0][2] };
+        let layer =
+            Layer { youngs_modulus: case[0][0], poissons_ratio: case[0][1], thickness: case[0][2] };
         let base = match case[0][3] {
             0.0 => Base::Rigid,
-            young => Base::HalfSpace { young, poisson: case[0][4] },
+            youngs_modulus => Base::HalfSpace { youngs_modulus, poissons_ratio: case[0][4] },
         };
         let body = LayeredBody::new(&[layer], base).unwrap();
         let alone = 1.0 / body.surface_modulus();

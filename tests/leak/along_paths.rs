@@ -255,9 +255,10 @@ fn nodes_that_touch_together_close_at_once() {
 #[test]
 fn a_seal_on_a_coat_may_open_again() {
     let grid = Grid::square(4, 4e-5).unwrap();
-    let (young, thickness) = (200e9, 5e-6);
-    let base = Base::HalfSpace { young: 7.4e9, poisson: 0.3 };
-    let body = LayeredBody::new(&[Layer { young, poisson: 0.3, thickness }], base).unwrap();
+    let (youngs_modulus, thickness) = (200e9, 5e-6);
+    let base = Base::HalfSpace { youngs_modulus: 7.4e9, poissons_ratio: 0.3 };
+    let body = LayeredBody::new(&[Layer { youngs_modulus, poissons_ratio: 0.3, thickness }], base)
+        .unwrap();
     let kernel = Layered::free(grid, body).unwrap();
     // In nanometres, rows along x.
     let rows = [139, 1, 15, 935, 433, 183, 274, 762, 118, 348, 467, 126, 269, 586, 827, 23];

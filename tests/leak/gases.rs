@@ -19,6 +19,7 @@ fn gases_flow_by_the_square_of_their_pressure() {
     let (inlet, outlet) = (3e5, 1e5);
     let liquid = Seal::new(1.0 / 12.0, inlet - outlet, Axis::X).unwrap();
     let gas = liquid.with_gas(outlet).unwrap();
+    assert_eq!([liquid, gas].map(|seal| seal.outlet_pressure()), [None, Some(outlet)]);
     let found = gas.leak(&gap, &open, on).unwrap();
     let expected = 2.0 / 4.0 * (inlet * inlet - outlet * outlet) / (2.0 * outlet);
     assert!((found.leak_rate / expected - 1.0).abs() < 1e-11, "{} {expected}", found.leak_rate);

@@ -18,6 +18,15 @@ impl Facets {
     }
 }
 
+/// Heights that are sampled from a surface can be taken out again, and are those of the surface.
+#[test]
+fn heights_are_taken_out_of_a_map() {
+    let grid = Grid::new(5, 4, 1.0, 2.0).unwrap();
+    let expected = Facets::new().heights(&grid).unwrap();
+    let map = asperity::surface::HeightMap::sample(&Facets::new(), &grid).unwrap();
+    assert_eq!(map.into_matrix(), expected);
+}
+
 impl Surface for Facets {
     fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, SurfaceError> {
         let (lx, ly) = grid.sides();

@@ -15,6 +15,9 @@ use asperity::{
 };
 use nalgebra::DMatrix;
 
+#[cfg(feature = "io")]
+use crate::resumed::through_a_file;
+
 /// An event: its kind, its node, and columns by name.
 struct Truth {
     yields: bool,
@@ -361,7 +364,8 @@ fn paths_end_where_they_are_to_end() {
             // And on from there.
             path.continue_to(ContactTarget::Load(states[340].contact.load)).unwrap();
             let last = path.last().unwrap().unwrap();
-            assert!((last.contact.approach / states[340].contact.approach - 1.0).abs() < 1e-6);
+            // Rounding of solutions in other windows, with a condition number of some 10³.
+            assert!((last.contact.approach / states[340].contact.approach - 1.0).abs() < 1e-10);
         }
     }
 }
@@ -397,10 +401,7 @@ fn records_of_paths_on_which_nodes_yield() {
             let mut path = builder().build().unwrap();
             let history: History = path.by_ref().take(at).collect::<Result<_, _>>().unwrap();
             let record = LoadingRecord::new(&path, history).unwrap();
-            let file = std::env::temp_dir().join(format!("asperity_hardness_{name}_{at}.npz"));
-            record.write_npz(&file, &[]).unwrap();
-            let read = LoadingRecord::read_npz(&file).unwrap();
-            std::fs::remove_file(&file).unwrap();
+            let read = through_a_file(&record);
             assert_eq!(read.states(), record.states());
             assert_eq!(read.settings(), record.settings());
             let as_text = serde_json::to_string(&record).unwrap();
@@ -420,7 +421,8 @@ fn records_of_paths_on_which_nodes_yield() {
                 replayed.fields_at(&state).unwrap().pressure,
                 path.fields_at(&state).unwrap().pressure,
             ];
-            assert!((a - b).amax() <= 1e-7 * HARDNESS, "{name}, {at}");
+            // A solution by iterations to some 10⁻¹², with that condition number, beside one of a factor.
+            assert!((a - b).amax() <= 1e-9 * HARDNESS, "{name}, {at}");
             assert_eq!(
                 replayed.fields_at(&state).unwrap().yielded_map,
                 path.fields_at(&state).unwrap().yielded_map

@@ -13,6 +13,8 @@ use asperity_testing::dense;
 use asperity_testing::surfaces::self_affine;
 use nalgebra::{DMatrix, DVector};
 
+#[cfg(feature = "io")]
+use crate::resumed::through_a_file;
 use crate::without_factor::half_spaces;
 
 /// Events closer than this, relative to the approach, are ties, which come in the order of their nodes.
@@ -588,10 +590,7 @@ fn records_of_paths_without_a_factor() {
             let mut path = builder().build().unwrap();
             let history: History = path.by_ref().take(at).collect::<Result<_, _>>().unwrap();
             let record = LoadingRecord::new(&path, history).unwrap();
-            let file = std::env::temp_dir().join(format!("asperity_iterated_{name}_{at}.npz"));
-            record.write_npz(&file, &[]).unwrap();
-            let read = LoadingRecord::read_npz(&file).unwrap();
-            std::fs::remove_file(&file).unwrap();
+            let read = through_a_file(&record);
             assert_eq!(read.states(), record.states());
             for mut again in
                 [read.replay().unwrap(), builder().resume(read.history()).unwrap().into_path()]

@@ -11,10 +11,10 @@ use asperity::{
     MeanDisplacement, SelfAffine,
 };
 
-const STEEL: Base = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+const STEEL: Base = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
 
-fn coat(young: f64, thickness: f64) -> LayeredBody {
-    LayeredBody::new(&[Layer { young, poisson: 0.3, thickness }], STEEL).unwrap()
+fn coat(youngs_modulus: f64, thickness: f64) -> LayeredBody {
+    LayeredBody::new(&[Layer { youngs_modulus, poissons_ratio: 0.3, thickness }], STEEL).unwrap()
 }
 
 fn rough(n: usize) -> (SelfAffine, Grid) {
@@ -25,13 +25,13 @@ fn rough(n: usize) -> (SelfAffine, Grid) {
 }
 
 /// W(δ) of a sphere over that of a thin layer, less 1, with a contact radius of 32 cells.
-fn errors_of_a_sphere(poisson: f64, thicknesses: [f64; 3]) -> [f64; 3] {
-    let (n, radius, young) = (96, 4000.0, 1.0);
+fn errors_of_a_sphere(poissons_ratio: f64, thicknesses: [f64; 3]) -> [f64; 3] {
+    let (n, radius, youngs_modulus) = (96, 4000.0, 1.0);
     let grid = Grid::square(n, n as f64).unwrap();
     let sphere = Paraboloid::new(radius).unwrap();
     thicknesses.map(|thickness: f64| {
-        let layer = ThinLayer::new(young, poisson, thickness).unwrap();
-        let body = Layer { young, poisson, thickness };
+        let layer = ThinLayer::new(youngs_modulus, poissons_ratio, thickness).unwrap();
+        let body = Layer { youngs_modulus, poissons_ratio, thickness };
         let kernel = Layered::free(grid, LayeredBody::new(&[body], Base::Rigid).unwrap()).unwrap();
         let mut solver = FixedLoadSolver::new(&sphere, &kernel).unwrap();
         let found = solver.solve_approach(layer.sphere_approach(radius, 32.0)).unwrap();
@@ -58,10 +58,10 @@ fn a_sphere_on_a_thin_layer() {
 fn a_punch_on_a_thin_layer() {
     let n = 96_usize;
     let grid = Grid::square(n, n as f64).unwrap();
-    for (poisson, thicknesses) in [(0.5, [6.0, 3.0, 1.5]), (0.3, [8.0, 4.0, 2.0])] {
+    for (poissons_ratio, thicknesses) in [(0.5, [6.0, 3.0, 1.5]), (0.3, [8.0, 4.0, 2.0])] {
         let errors = thicknesses.map(|thickness: f64| {
-            let layer = ThinLayer::new(1.0, poisson, thickness).unwrap();
-            let body = Layer { young: 1.0, poisson, thickness };
+            let layer = ThinLayer::new(1.0, poissons_ratio, thickness).unwrap();
+            let body = Layer { youngs_modulus: 1.0, poissons_ratio, thickness };
             let body = LayeredBody::new(&[body], Base::Rigid).unwrap();
             let kernel = Layered::free(grid, body).unwrap();
             let disc = disc_of(n, 32.0);
@@ -74,7 +74,7 @@ fn a_punch_on_a_thin_layer() {
         for pair in errors.windows(2) {
             // First order, what is left of the second, and the steps of the outline.
             let ratio = pair[1] / pair[0];
-            assert!((0.3..0.65).contains(&ratio), "{poisson}: {errors:?}");
+            assert!((0.3..0.65).contains(&ratio), "{poissons_ratio}: {errors:?}");
         }
     }
 }
@@ -104,10 +104,10 @@ fn followed(
 #[test]
 fn paths_on_coats_are_those_of_single_loads() {
     let (surface, grid) = rough(32);
-    for young in [20e9, 2000e9] {
+    for youngs_modulus in [20e9, 2000e9] {
         for made in [Layered::free, Layered::periodic, Layered::spectral] {
-            let kernel = made(grid, coat(young, 15e-6)).unwrap();
-            let is_soft = young < 210e9;
+            let kernel = made(grid, coat(youngs_modulus, 15e-6)).unwrap();
+            let is_soft = youngs_modulus < 210e9;
             assert_eq!(kernel.contact_growth() > ContactGrowth::Unknown, is_soft);
             let (mut path, states) = followed(&kernel, &surface, 0.5);
             let certificate = path.certificate().unwrap();
@@ -120,9 +120,9 @@ fn paths_on_coats_are_those_of_single_loads() {
                 let found = solver.solve(state.contact.load).unwrap().contact;
                 // The tolerance, times a condition number of some 1e2.
                 let error = found.mean_gap / state.contact.mean_gap - 1.0;
-                assert!(error.abs() < 1e-8, "{young} {error:e}");
+                assert!(error.abs() < 1e-9, "{youngs_modulus} {error:e}");
                 let error = found.approach / state.contact.approach - 1.0;
-                assert!(error.abs() < 1e-8, "{young} {error:e}");
+                assert!(error.abs() < 1e-9, "{youngs_modulus} {error:e}");
             }
         }
     }
@@ -133,14 +133,16 @@ fn paths_on_coats_are_those_of_single_loads() {
 #[test]
 fn the_mean_displacement_is_that_of_the_layers() {
     let (surface, grid) = rough(24);
-    for (poisson, mean) in [(0.3, MeanDisplacement::Physical), (0.5, MeanDisplacement::Arbitrary)] {
+    for (poissons_ratio, mean) in
+        [(0.3, MeanDisplacement::Physical), (0.5, MeanDisplacement::Arbitrary)]
+    {
         let layers = [
-            Layer { young: 1e9, poisson, thickness: 20e-6 },
-            Layer { young: 3e9, poisson, thickness: 60e-6 },
+            Layer { youngs_modulus: 1e9, poissons_ratio, thickness: 20e-6 },
+            Layer { youngs_modulus: 3e9, poissons_ratio, thickness: 60e-6 },
         ];
         let body = LayeredBody::new(&layers, Base::Rigid).unwrap();
         let compliance = body.mean_compliance().unwrap();
-        assert_eq!(compliance == 0.0, poisson == 0.5);
+        assert_eq!(compliance == 0.0, poissons_ratio == 0.5);
         for made in [Layered::periodic, Layered::spectral] {
             let kernel = made(grid, body.clone()).unwrap();
             assert_eq!(kernel.mean_displacement(), mean);
@@ -152,7 +154,7 @@ fn the_mean_displacement_is_that_of_the_layers() {
                 let error = state.contact.mean_gap - (unloaded + uniform - state.contact.approach);
                 assert!(
                     error.abs() <= 1e-10 * (unloaded + state.contact.approach),
-                    "{poisson} {error:e}"
+                    "{poissons_ratio} {error:e}"
                 );
             }
             let last = states[states.len() - 1];
@@ -170,10 +172,10 @@ fn a_layer_may_be_incompressible_to_rounding() {
     let grid = Grid::square(16, 1e-3).unwrap();
     for thickness in [20e-6, 200e-6] {
         for made in [Layered::periodic, Layered::spectral] {
-            let paths = [0.5, 0.499_999_999_999_999_9].map(|poisson| {
-                let layer = Layer { young: 3e6, poisson, thickness };
+            let paths = [0.5, 0.499_999_999_999_999_9].map(|poissons_ratio| {
+                let layer = Layer { youngs_modulus: 3e6, poissons_ratio, thickness };
                 let body = LayeredBody::new(&[layer], Base::Rigid).unwrap();
-                assert_eq!(body.mean_compliance().unwrap() > 0.0, poisson < 0.5);
+                assert_eq!(body.mean_compliance().unwrap() > 0.0, poissons_ratio < 0.5);
                 let kernel = made(grid, body).unwrap();
                 assert_eq!(kernel.mean_displacement(), MeanDisplacement::Arbitrary);
                 followed(&kernel, &surface, 0.9).1
@@ -199,8 +201,8 @@ fn records_of_layered_bodies_are_gone_on_from() {
     let (surface, grid) = rough(32);
     let graded = LayeredBody::new(
         &[
-            Layer { young: 30e9, poisson: 0.4, thickness: 5e-6 },
-            Layer { young: 80e9, poisson: 0.35, thickness: 10e-6 },
+            Layer { youngs_modulus: 30e9, poissons_ratio: 0.4, thickness: 5e-6 },
+            Layer { youngs_modulus: 80e9, poissons_ratio: 0.35, thickness: 10e-6 },
         ],
         STEEL,
     );
@@ -230,9 +232,12 @@ fn records_of_layered_bodies_are_gone_on_from() {
                 let all = states.iter().filter(|state| state.event != ContactEvent::Limit);
                 all.map(|state| (state.event, state.node)).collect()
             };
-            let all = events(&whole);
+            let mut all = events(&begun);
             let later = events(&more);
-            assert_eq!(later[..], all[all.len() - later.len()..]);
+            assert!(!all.is_empty() && !later.is_empty(), "{k} {j}");
+            // None is missing, and none is there twice.
+            all.extend(later);
+            assert_eq!(all, events(&whole), "{k} {j}");
             let (found, expected) = (more[more.len() - 1].contact, whole[whole.len() - 1].contact);
             assert!((found.load / expected.load - 1.0).abs() < 1e-9);
         }

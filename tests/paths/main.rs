@@ -35,4 +35,5 @@ mod strips;
 mod thick_stiff_coats;
 mod ties;
 mod undisturbed;
+mod where_paths_stop;
 mod without_factor;

@@ -70,10 +70,10 @@ fn fixed_loads_agree_with_the_path() {
         ] {
             let found = expected_like(expected, solution.contact);
             // The tolerance, times a condition number of some 1e2.
-            assert_close(&found, &expected, 1e-8, all[0].contact.mean_gap);
+            assert_close(&found, &expected, 1e-9, all[0].contact.mean_gap);
             assert!(found.contact.contact_stiffness.is_some());
             let error = (&solution.fields.pressure - &pressure).amax();
-            assert!(error <= 1e-8 * pressure.amax(), "step {step}: {error:e}");
+            assert!(error <= 1e-9 * pressure.amax(), "step {step}: {error:e}");
             let mean = solution.fields.displacement.mean();
             let error = mean / mean_displacement(found.contact.load, &grid) - 1.0;
             assert!(error.abs() < 1e-11, "step {step}: {error:e}");

@@ -17,8 +17,9 @@
 //! another rule for ties, fewer windows. Where the last digits change, it says what is computed in another order, and
 //! the drivers have run. A change that only moves code leaves the table as it is.
 //!
-//! Bits are those of a processor: matrix products sum in the order of its registers, with AVX-512 and with AVX2 to the
-//! same numbers on all of these paths.
+//! Bits are those of x86-64, and are compared there only: matrix products sum in the order of the registers of a
+//! processor, with AVX-512 and with AVX2 to the same numbers on all of these paths. Elsewhere the order of events is
+//! compared, and counts as without a factor.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::{History, LoadingBuilder};
@@ -137,8 +138,10 @@ fn cases() -> Vec<Case> {
     }
     // On which nodes leave the contact.
     let grid = Grid::square(24, 24.0).unwrap();
-    let coat = Layer { young: 10.0, poisson: 0.3, thickness: 1.0 };
-    let body = LayeredBody::new(&[coat], Base::HalfSpace { young: 1.0, poisson: 0.3 }).unwrap();
+    let coat = Layer { youngs_modulus: 10.0, poissons_ratio: 0.3, thickness: 1.0 };
+    let body =
+        LayeredBody::new(&[coat], Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 })
+            .unwrap();
     let kernel = Layered::free(grid, body).unwrap();
     let surface = SelfAffine::new(0.8, 12.0, 2.0, Amplitude::RmsHeight(1.0), 1).unwrap();
     let surface = HeightMap::sample(&surface, &grid).unwrap();
@@ -260,9 +263,10 @@ fn small_paths_are_pinned() {
     for (pin, &(name, states, order, bits, counts)) in found.iter().zip(TABLE) {
         assert_eq!(pin.name, name);
         let near = |(a, b): (&usize, &usize)| a.abs_diff(*b) <= 2 + b / 50;
+        let with_bits = cfg!(target_arch = "x86_64") && (pin.is_exact || mode == "bits");
         let is_same = (pin.states, pin.order) == (states, order)
             && pin.counts.iter().zip(&counts).all(near)
-            && (pin.counts == counts && pin.bits == bits || !pin.is_exact && mode != "bits");
+            && (!with_bits || (pin.counts, pin.bits) == (counts, bits));
         if !is_same {
             changed.push(pin.to_string());
         }

@@ -18,8 +18,9 @@ const CASES: [(usize, f64, f64, u64); 4] =
 fn cases() -> impl Iterator<Item = (String, Layered, HeightMap)> {
     CASES.into_iter().flat_map(|(n, ratio, thickness, seed)| {
         let grid = Grid::square(n, n as f64).unwrap();
-        let coat = Layer { young: ratio, poisson: 0.3, thickness: thickness * n as f64 };
-        let base = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+        let coat =
+            Layer { youngs_modulus: ratio, poissons_ratio: 0.3, thickness: thickness * n as f64 };
+        let base = Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 };
         let body = LayeredBody::new(&[coat], base).unwrap();
         let surface = SelfAffine::new(0.8, 0.5 * n as f64, 2.0, Amplitude::RmsHeight(1.0), seed);
         let heights = HeightMap::new(surface.unwrap().heights(&grid).unwrap()).unwrap();
@@ -75,8 +76,8 @@ fn the_same_updater_has_the_same_bits() {
 fn loads_are_those_of_solutions_where_stiffnesses_cancel() {
     let grid = Grid::square(32, 1e-2).unwrap();
     for (ratio, thickness, seed) in [(259.67, 0.003_223_73, 862), (193.428, 0.003_709_57, 559)] {
-        let coat = Layer { young: 200e9, poisson: 0.3, thickness };
-        let base = Base::HalfSpace { young: 200e9 / ratio, poisson: 0.3 };
+        let coat = Layer { youngs_modulus: 200e9, poissons_ratio: 0.3, thickness };
+        let base = Base::HalfSpace { youngs_modulus: 200e9 / ratio, poissons_ratio: 0.3 };
         let kernel = Layered::free(grid, LayeredBody::new(&[coat], base).unwrap()).unwrap();
         let surface = SelfAffine::new(0.8, 2.5e-3, 2.5e-3, Amplitude::RmsHeight(5e-5), seed);
         let heights = HeightMap::new(surface.unwrap().heights(&grid).unwrap()).unwrap();
@@ -179,8 +180,9 @@ fn a_path_goes_on_behind_a_window_in_which_nothing_happened() {
     for seed in [1, 2] {
         let (n, thickness) = (16, 0.7);
         let grid = Grid::square(n, n as f64).unwrap();
-        let coat = Layer { young: 300.0, poisson: 0.3, thickness: thickness * n as f64 };
-        let base = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+        let coat =
+            Layer { youngs_modulus: 300.0, poissons_ratio: 0.3, thickness: thickness * n as f64 };
+        let base = Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 };
         let kernel = Layered::free(grid, LayeredBody::new(&[coat], base).unwrap()).unwrap();
         let surface = SelfAffine::new(0.8, 0.5 * n as f64, 2.0, Amplitude::RmsHeight(1.0), seed);
         let heights = HeightMap::new(surface.unwrap().heights(&grid).unwrap()).unwrap();

@@ -12,8 +12,10 @@ use asperity::{
 /// A coat of E₁/E₂ and a thickness in cells, on cells of 1.
 fn coated(n: usize, ratio: f64, thickness: f64, is_free: bool) -> Layered {
     let grid = Grid::square(n, n as f64).unwrap();
-    let coat = Layer { young: ratio, poisson: 0.3, thickness };
-    let body = LayeredBody::new(&[coat], Base::HalfSpace { young: 1.0, poisson: 0.3 }).unwrap();
+    let coat = Layer { youngs_modulus: ratio, poissons_ratio: 0.3, thickness };
+    let body =
+        LayeredBody::new(&[coat], Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 })
+            .unwrap();
     let kernel =
         if is_free { Layered::free(grid, body) } else { Layered::periodic(grid, body) }.unwrap();
     assert_eq!(kernel.contact_growth(), ContactGrowth::Unknown);

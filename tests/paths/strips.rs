@@ -90,7 +90,7 @@ fn what_windows_leave_out_is_part_of_the_estimate() {
     }
     let grid = Grid::square(24, 24.0).unwrap();
     for (thickness, seed) in [(0.8, 1), (1.5, 1), (1.5, 3)] {
-        let layer = Layer { young: 1.0, poisson: 0.5, thickness };
+        let layer = Layer { youngs_modulus: 1.0, poissons_ratio: 0.5, thickness };
         let body = LayeredBody::new(&[layer], Base::Rigid).unwrap();
         let kernel = Layered::periodic(grid, body).unwrap();
         problems.push((format!("{thickness} {seed}"), strip(&grid, seed), Box::new(kernel)));

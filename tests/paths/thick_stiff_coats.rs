@@ -12,8 +12,10 @@ use crate::common::surface;
 /// A coat on an n × n grid of side 1.
 fn coated(n: usize, [ratio, thickness]: [f64; 2], is_free: bool) -> Layered {
     let grid = Grid::square(n, 1.0).unwrap();
-    let coat = Layer { young: ratio, poisson: 0.3, thickness };
-    let body = LayeredBody::new(&[coat], Base::HalfSpace { young: 1.0, poisson: 0.3 }).unwrap();
+    let coat = Layer { youngs_modulus: ratio, poissons_ratio: 0.3, thickness };
+    let body =
+        LayeredBody::new(&[coat], Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 })
+            .unwrap();
     if is_free { Layered::free(grid, body) } else { Layered::periodic(grid, body) }.unwrap()
 }
 
@@ -133,8 +135,8 @@ fn paths_solve_the_contact_problem_at_every_event() {
 #[test]
 fn glass_on_rubber() {
     let grid = Grid::square(32, 1e-3).unwrap();
-    let glass = Layer { young: 70e9, poisson: 0.22, thickness: 7e-4 };
-    let rubber = Base::HalfSpace { young: 2e6, poisson: 0.5 };
+    let glass = Layer { youngs_modulus: 70e9, poissons_ratio: 0.22, thickness: 7e-4 };
+    let rubber = Base::HalfSpace { youngs_modulus: 2e6, poissons_ratio: 0.5 };
     let body = LayeredBody::new(&[glass], rubber).unwrap();
     let kernel = Layered::free(grid, body).unwrap();
     assert_eq!(kernel.contact_growth(), ContactGrowth::Unknown);
@@ -214,8 +216,8 @@ fn no_window_ends_in_tension() {
         broken
     }
     let heights = surface("coat32");
-    let glass = Layer { young: 70e9, poisson: 0.22, thickness: 7e-4 };
-    let rubber = Base::HalfSpace { young: 2e6, poisson: 0.5 };
+    let glass = Layer { youngs_modulus: 70e9, poissons_ratio: 0.22, thickness: 7e-4 };
+    let rubber = Base::HalfSpace { youngs_modulus: 2e6, poissons_ratio: 0.5 };
     let body = LayeredBody::new(&[glass], rubber).unwrap();
     let body = Layered::free(Grid::square(32, 1e-3).unwrap(), body).unwrap();
     for growth in [ContactGrowth::Monotone, ContactGrowth::Convex] {

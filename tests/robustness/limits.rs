@@ -1,6 +1,7 @@
 //! Limits: what is refused, where a path ends, and why.
 
 use crate::common::Sphere;
+use approx::assert_relative_eq;
 use asperity::loading::{ContactEvent, LoadingBuilder, LoadingEnd};
 use asperity::surface::HeightMap;
 use asperity::{
@@ -121,7 +122,7 @@ fn limits_are_ends_and_not_errors() {
     assert_eq!(run(builder, LoadingEnd::FullContact).len(), 36);
 }
 
-/// Of several limits the first one reached counts, and of several of one kind the last one given.
+/// Of several limits the first one reached counts, also of several of one kind, whatever their order.
 #[test]
 fn the_first_limit_reached_counts() {
     let sphere = Sphere::on(6);
@@ -134,9 +135,26 @@ fn the_first_limit_reached_counts() {
     let builder = sphere.builder().max_load(load).max_approach(all[12].contact.approach);
     let states = run(builder, LoadingEnd::Approach);
     assert_eq!(states.last().unwrap().contact.approach, all[12].contact.approach);
-    let builder = sphere.builder().max_load(load).max_load(0.5 * load);
-    let states = run(builder, LoadingEnd::Load);
-    assert_eq!(states.last().unwrap().contact.load, 0.5 * load);
+    let pressure = 0.5 * load / all[0].contact.nominal_area;
+    for builder in [
+        sphere.builder().max_load(load).max_mean_pressure(pressure),
+        sphere.builder().max_mean_pressure(pressure).max_load(load),
+    ] {
+        let states = run(builder, LoadingEnd::Load);
+        assert_relative_eq!(states.last().unwrap().contact.load, 0.5 * load, max_relative = 1e-15);
+    }
+    let (near, far) = (all[12].contact, all[15].contact);
+    for [first, second] in [[near, far], [far, near]] {
+        let builder = sphere.builder().max_approach(first.approach).max_approach(second.approach);
+        let states = run(builder, LoadingEnd::Approach);
+        assert_eq!(states.last().unwrap().contact.approach, near.approach);
+        let builder = sphere.builder().min_mean_gap(first.mean_gap).min_mean_gap(second.mean_gap);
+        let states = run(builder, LoadingEnd::MeanGap);
+        assert_eq!(states.last().unwrap().contact.mean_gap, near.mean_gap);
+        let [first, second] = [first, second].map(|contact| contact.contact_area_fraction);
+        let builder = sphere.builder().max_area_fraction(first).max_area_fraction(second);
+        assert_eq!(run(builder, LoadingEnd::AreaFraction).len(), near.contact_nodes);
+    }
 }
 
 /// A limit at which an event happens adds no second state.

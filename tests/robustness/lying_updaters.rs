@@ -1,5 +1,8 @@
 //! Updaters that skip calls, or answer them for another contact: an error or nonsense, and never a panic.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use asperity::loading::LoadingEnd;
 use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, LinearUpdater, RecursiveCholesky};
@@ -7,12 +10,19 @@ use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, Spectral};
 use asperity_testing::{Altered, Call};
 use nalgebra::DMatrix;
 
-/// An updater that skips every n-th call of a kind, or answers it for another contact.
-fn lying(inner: Box<dyn LinearUpdater>, what: &'static str, turn: usize) -> impl LinearUpdater {
+/// An updater that skips every n-th call of a kind, or answers it for another contact. It counts how often.
+fn lying(
+    inner: Box<dyn LinearUpdater>,
+    (what, turn): (&'static str, usize),
+    struck: &Arc<AtomicUsize>,
+) -> impl LinearUpdater {
     let mut calls = 0_usize;
+    let (struck, of_memory) = (struck.clone(), struck.clone());
     let mut lies = move |lie: &str| {
         calls += usize::from(what == lie);
-        what == lie && calls.is_multiple_of(turn)
+        let strikes = what == lie && calls.is_multiple_of(turn);
+        struck.fetch_add(usize::from(strikes), Ordering::Relaxed);
+        strikes
     };
     Altered::new(inner)
         .on_call(move |inner, call| {
@@ -69,7 +79,10 @@ fn lying(inner: Box<dyn LinearUpdater>, what: &'static str, turn: usize) -> impl
             Ok(())
         })
         .on_bytes(move |inner, (contact, watched)| match what {
-            "all memory" => usize::MAX,
+            "all memory" => {
+                of_memory.fetch_add(1, Ordering::Relaxed);
+                usize::MAX
+            }
             _ => inner.bytes(contact, watched),
         })
 }
@@ -102,8 +115,10 @@ fn lying_updaters() {
     let rough = HeightMap::new(heights).unwrap();
     let kernels: [&dyn InfluenceKernel; 2] =
         [&Boussinesq::new(grid, 1.0).unwrap(), &Spectral::new(grid, 1.0).unwrap()];
+    let mut strikes = LIES.map(|_| Arc::new(AtomicUsize::new(0)));
     for kernel in kernels {
-        for what in LIES {
+        let mut states = 0;
+        for (what, struck) in LIES.into_iter().zip(&mut strikes) {
             for turn in 1..4 {
                 for (exact, hardness) in
                     [(true, f64::INFINITY), (false, f64::INFINITY), (true, 0.2)]
@@ -114,15 +129,15 @@ fn lying_updaters() {
                         Box::new(ConjugateGradient::new())
                     };
                     let builder = LoadingSolver::builder(&rough, kernel).hardness(hardness);
-                    let builder = builder.updater(lying(inner, what, turn));
-                    let Ok(mut path) = builder.window_size(4).build() else {
-                        continue;
-                    };
+                    let builder = builder.updater(lying(inner, (what, turn), struck));
+                    // Nothing is asked of an updater before the first state.
+                    let mut path = builder.window_size(4).build().unwrap();
                     let mut count = 0;
                     while let Some(item) = path.next() {
                         count += 1;
                         assert!(count < 1000, "{what} has no end");
                         let Ok(state) = item else { continue };
+                        states += 1;
                         for value in [
                             state.contact.approach,
                             state.contact.load,
@@ -142,5 +157,13 @@ fn lying_updaters() {
                 }
             }
         }
+        println!("{states} states");
+        // Of 17 × 9 paths of 30 nodes.
+        assert!(states > 900, "{states}");
+    }
+    for (what, struck) in LIES.iter().zip(strikes) {
+        let struck = struck.load(Ordering::Relaxed);
+        println!("{what}: {struck}");
+        assert!(struck > 0, "{what} was never told");
     }
 }

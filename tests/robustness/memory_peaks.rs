@@ -137,8 +137,8 @@ fn paths_on_which_nodes_yield_or_leave_stay_within_their_budget() {
     for grid in grids() {
         let map = rough(&grid);
         let free = Boussinesq::new(grid, 1.0).unwrap();
-        let coat = Layer { young: 100.0, poisson: 0.3, thickness: 6.0 };
-        let base = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+        let coat = Layer { youngs_modulus: 100.0, poissons_ratio: 0.3, thickness: 6.0 };
+        let base = Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 };
         let body = LayeredBody::new(&[coat], base).unwrap();
         let coated = Layered::free(grid, body).unwrap();
         assert_eq!(coated.contact_growth(), ContactGrowth::Unknown);

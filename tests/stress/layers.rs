@@ -14,12 +14,15 @@ const COAT: (f64, f64) = (450e9, 0.22);
 
 fn coated(
     layers: &[((f64, f64), f64)],
-    (young, poisson): (f64, f64),
+    (youngs_modulus, poissons_ratio): (f64, f64),
 ) -> Result<LayeredBody, Error> {
-    let layer =
-        |&((young, poisson), thickness): &((f64, f64), f64)| Layer { young, poisson, thickness };
+    let layer = |&((youngs_modulus, poissons_ratio), thickness): &((f64, f64), f64)| Layer {
+        youngs_modulus,
+        poissons_ratio,
+        thickness,
+    };
     let layers: Vec<Layer> = layers.iter().map(layer).collect();
-    LayeredBody::new(&layers, Base::HalfSpace { young, poisson })
+    LayeredBody::new(&layers, Base::HalfSpace { youngs_modulus, poissons_ratio })
 }
 
 /// Uneven.

@@ -28,8 +28,11 @@ fn pressed(kernel: &dyn InfluenceKernel, e_star: f64) -> Result<(LoadingSolver, 
 }
 
 fn layered(layers: &[((f64, f64), f64)], base: Base) -> Result<LayeredBody, Error> {
-    let layer =
-        |&((young, poisson), thickness): &((f64, f64), f64)| Layer { young, poisson, thickness };
+    let layer = |&((youngs_modulus, poissons_ratio), thickness): &((f64, f64), f64)| Layer {
+        youngs_modulus,
+        poissons_ratio,
+        thickness,
+    };
     LayeredBody::new(&layers.iter().map(layer).collect::<Vec<_>>(), base)
 }
 
@@ -54,11 +57,11 @@ fn greatest(
 /// the half-space itself.
 #[test]
 fn layers_of_one_material_yield_as_a_half_space() -> Result<(), Error> {
-    let (young, poisson) = STEEL;
-    let e_star = young / (1.0 - poisson * poisson);
+    let (youngs_modulus, poissons_ratio) = STEEL;
+    let e_star = youngs_modulus / (1.0 - poissons_ratio * poissons_ratio);
     let strength = 6e8;
     let half_space = Spectral::new(grid()?, e_star)?;
-    let plain = Subsurface::of(&half_space, poisson)?;
+    let plain = Subsurface::of(&half_space, poissons_ratio)?;
     let (mut path, history) = pressed(&half_space, e_star)?;
     let whole = plain.first_yield(&mut path, &history, strength)?.unwrap();
     assert_eq!(plain.materials(), 1);
@@ -68,7 +71,7 @@ fn layers_of_one_material_yield_as_a_half_space() -> Result<(), Error> {
     let depth = whole.greatest.depth;
     let thicknesses = [0.4 * depth, depth];
     let layers = thicknesses.map(|thickness| (STEEL, thickness));
-    let body = layered(&layers, Base::HalfSpace { young, poisson })?;
+    let body = layered(&layers, Base::HalfSpace { youngs_modulus, poissons_ratio })?;
     let kernel = Layered::spectral(grid()?, body)?;
     let below = Subsurface::of(&kernel, 0.0)?;
     let (mut path, history) = pressed(&kernel, e_star)?;
@@ -95,8 +98,8 @@ fn layers_of_one_material_yield_as_a_half_space() -> Result<(), Error> {
 #[test]
 fn each_material_of_a_coated_sphere_yields_by_itself() -> Result<(), Error> {
     let thickness = 30e-6;
-    let (young, poisson) = STEEL;
-    let body = layered(&[(COAT, thickness)], Base::HalfSpace { young, poisson })?;
+    let (youngs_modulus, poissons_ratio) = STEEL;
+    let body = layered(&[(COAT, thickness)], Base::HalfSpace { youngs_modulus, poissons_ratio })?;
     let kernel = Layered::free(grid()?, body)?;
     let below = Subsurface::of(&kernel, 0.0)?;
     let (mut path, history) = pressed(&kernel, 250e9)?;
@@ -139,10 +142,10 @@ fn there_is_one_yield_stress_for_each_material() -> Result<(), Error> {
 /// Behind that it is one of the places at which the stress passes, and where the stress ends below it no answer is certain.
 #[test]
 fn bodies_that_yield_at_the_surface_too() -> Result<(), Error> {
-    let (young, poisson) = STEEL;
-    let e_star = young / (1.0 - poisson * poisson);
+    let (youngs_modulus, poissons_ratio) = STEEL;
+    let e_star = youngs_modulus / (1.0 - poissons_ratio * poissons_ratio);
     let half_space = Spectral::new(grid()?, e_star)?;
-    let below = Subsurface::of(&half_space, poisson)?;
+    let below = Subsurface::of(&half_space, poissons_ratio)?;
     let (mut path, history) = pressed(&half_space, e_star)?;
     let strength = 6e8;
     let elastic = below.first_yield(&mut path, &history, strength)?;

@@ -34,7 +34,7 @@ fn what_makes_no_sense_is_refused() -> Result<(), Error> {
 fn what_layers_do_not_have_is_refused() -> Result<(), Error> {
     let grid = Grid::square(8, 8e-6)?;
     let load = DMatrix::from_element(8, 8, 1.0);
-    let coat = |thickness| Layer { young: 400e9, poisson: 0.25, thickness };
+    let coat = |thickness| Layer { youngs_modulus: 400e9, poissons_ratio: 0.25, thickness };
     let sheet = LayeredBody::new(&[coat(1e-6)], Base::Rigid)?;
     let sheet = Subsurface::of(&Layered::free(grid, sheet)?, 0.3)?;
     assert!(matches!(sheet.clone().sliding(0.1, 0.0), Err(Error::NotHomogeneous { .. })));
@@ -43,7 +43,10 @@ fn what_layers_do_not_have_is_refused() -> Result<(), Error> {
     let deep = sheet.at_depth(&load, 1.1e-6);
     assert!(matches!(deep, Err(Error::Stress(StressError::InRigidBase { .. }))), "{deep:?}");
     assert!(sheet.survey(&load, None)?.depths.iter().all(|depth| depth.depth <= 1e-6));
-    let thin = LayeredBody::new(&[coat(1e-7)], Base::HalfSpace { young: 210e9, poisson: 0.3 })?;
+    let thin = LayeredBody::new(
+        &[coat(1e-7)],
+        Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 },
+    )?;
     let thin = Subsurface::of(&Layered::periodic(grid, thin)?, 0.3)?;
     assert!(matches!(thin.at_depth(&load, 1e-7), Err(Error::OutOfRange { .. })));
     Ok(())

@@ -1,5 +1,6 @@
 //! Depths that are chosen, and the load of first yield.
 
+use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::loading::History;
 use asperity::stress::{FirstYield, Measure, Subsurface};
 use asperity::surface::Paraboloid;
@@ -45,9 +46,9 @@ fn line_contacts_on_strips_are_looked_at_to_their_width() -> Result<(), Error> {
             let y = (ix.max(iy) as f64 + 0.5) * cell - 1.25;
             (1.0 - y * y).max(0.0).sqrt()
         });
-        for (poisson, friction) in [(0.25, 0.1), (0.3, 0.25), (0.25, 0.0)] {
+        for (poissons_ratio, friction) in [(0.25, 0.1), (0.3, 0.25), (0.25, 0.0)] {
             let angle = if shape.0 > 1 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
-            let body = Subsurface::new(grid, boundary, poisson)?.sliding(friction, angle)?;
+            let body = Subsurface::new(grid, boundary, poissons_ratio)?.sliding(friction, angle)?;
             let found = body.survey(&pressure, None)?;
             let everywhere: Vec<f64> = (0..=60).map(|k| 0.025 * f64::from(k)).collect();
             let all = body.survey(&pressure, Some(&everywhere))?;
@@ -71,6 +72,31 @@ fn line_contacts_on_strips_are_looked_at_to_their_width() -> Result<(), Error> {
 /// until it is found.
 #[test]
 fn what_lies_deep_is_found() -> Result<(), Error> {
+    // Hertz' pressure in patches of nine cells, with slits of one between them: below 0.81 of it, and at the slits,
+    // where the pressure is what it was, less von Mises' stress than that.
+    let (grid, smooth) = hertz(30, 32);
+    let pressure =
+        smooth.map_with_location(|ix, iy, p| if ix % 10 == 7 || iy % 10 == 7 { 0.0 } else { p });
+    let body = Subsurface::new(grid, Boundary::Free, 0.3)?;
+    let first = *body.depths(&pressure)?.last().unwrap();
+    let found = body.survey(&pressure, None)?;
+    let everywhere: Vec<f64> = (1..=60).map(|k| 0.015 * f64::from(k)).collect();
+    let all = body.survey(&pressure, Some(&everywhere))?;
+    for measure in [Measure::VonMises, Measure::GreatestShear] {
+        let [found, all] = [&found, &all].map(|survey| survey.greatest(measure));
+        println!("{found:?} {all:?}, first {first}");
+        assert!(found.depth > first && all.depth > first, "{found:?} {all:?} {first}");
+        // Depths 0.015 apart miss a vertex by 10⁻⁴ of it.
+        assert!(found.value > 0.9995 * all.value, "{found:?} {all:?}");
+    }
+    // It lies within what was looked at.
+    assert!(found.depths.last().unwrap().depth > found.greatest(Measure::VonMises).depth);
+    Ok(())
+}
+
+/// Where patches are small, the greatest stress may be theirs; and every depth of a survey has that of all nodes.
+#[test]
+fn depths_have_the_greatest_of_all_nodes() -> Result<(), Error> {
     // Every second node of a Hertzian pressure of the same load: nodes are patches.
     let (grid, smooth) = hertz(10, 12);
     let pressure =
@@ -93,6 +119,53 @@ fn what_lies_deep_is_found() -> Result<(), Error> {
             assert_eq!(greatest.value, map[greatest.node]);
         }
     }
+    Ok(())
+}
+
+/// A survey hands over every field that it has, once; its depths are those of the materials one after the other, of
+/// which an interface belongs to the upper one; and an error of who looks at them ends it.
+#[test]
+fn surveys_are_made_of_materials() -> Result<(), Error> {
+    let (grid, pressure) = hertz(4, 8);
+    let layer =
+        |youngs_modulus, thickness| Layer { youngs_modulus, poissons_ratio: 0.3, thickness };
+    let base = Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 };
+    let layers = LayeredBody::new(&[layer(3.0, 0.3), layer(0.5, 0.4)], base)?;
+    let body = Subsurface::of(&Layered::free(grid, layers)?, 0.3)?;
+    let mut seen = Vec::new();
+    let survey = body.survey_with(&pressure, None, |field| {
+        seen.push((field.depth, field.map(Measure::VonMises).max()));
+        Ok::<(), Error>(())
+    })?;
+    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let of = |depth: &asperity::stress::DepthSurvey| {
+        (depth.depth, depth.greatest(Measure::VonMises).value)
+    };
+    assert_eq!(seen, survey.depths.iter().map(of).collect::<Vec<_>>());
+    let parts = body.by_material(&survey);
+    assert_eq!(parts.len(), 3);
+    let together: Vec<_> = parts.iter().flat_map(|part| &part.depths).map(of).collect();
+    assert_eq!(together, seen);
+    let second = 0.3 + 0.4;
+    for (part, (above, below)) in
+        parts.iter().zip([(-1.0, 0.3), (0.3, second), (second, f64::INFINITY)])
+    {
+        let is_within = |depth: f64| depth > above && depth <= below;
+        assert!(part.depths.iter().all(|depth| is_within(depth.depth)), "{above} {below}");
+        // Each is looked at around its own greatest stress.
+        assert!(part.depths.len() > 5, "{}", part.depths.len());
+    }
+    let greatest = parts.iter().map(|part| part.greatest(Measure::VonMises).value);
+    assert_eq!(greatest.fold(0.0, f64::max), survey.greatest(Measure::VonMises).value);
+    // None was looked at in the second one.
+    let few = body.by_material(&body.survey(&pressure, Some(&[0.3, 2.0]))?);
+    assert_eq!(few.iter().map(|part| part.depths.len()).collect::<Vec<_>>(), [1, 0, 1]);
+    let mut looked_at = 0;
+    let ended = body.survey_with(&pressure, None, |_| {
+        looked_at += 1;
+        Err(Error::NotFinite { step: 7 })
+    });
+    assert!(matches!(ended, Err(Error::NotFinite { step: 7 })) && looked_at == 1);
     Ok(())
 }
 
