@@ -17,8 +17,8 @@ pub(crate) struct LayerArgument {
 
 impl LayerArgument {
     pub(crate) fn layer(&self) -> Layer {
-        let (young, poisson) = self.material.elastic();
-        Layer { young, poisson, thickness: self.thickness }
+        let (youngs_modulus, poissons_ratio) = self.material.elastic();
+        Layer { youngs_modulus, poissons_ratio, thickness: self.thickness }
     }
 }
 
@@ -48,22 +48,29 @@ impl FromStr for BaseArgument {
         }
         let material =
             text.parse::<Material>().map_err(|error| format!("not 'rigid', and {error}"))?;
-        let (young, poisson) = material.elastic();
-        Ok(Self(Base::HalfSpace { young, poisson }))
+        let (youngs_modulus, poissons_ratio) = material.elastic();
+        Ok(Self(Base::HalfSpace { youngs_modulus, poissons_ratio }))
     }
 }
 
 /// `5 µm of E = 450 GPa, ν = 0.25 on E = 210 GPa, ν = 0.30 against rigid`.
 pub(crate) fn described(body: &LayeredBody) -> String {
-    let elastic =
-        |young: f64, poisson: f64| format!("E = {}, ν = {poisson:.2}", quantity(young, "Pa", 4));
+    let elastic = |youngs_modulus: f64, poissons_ratio: f64| {
+        format!("E = {}, ν = {poissons_ratio:.2}", quantity(youngs_modulus, "Pa", 4))
+    };
     let layers = body.layers().iter().map(|layer| {
-        format!("{} of {}", quantity(layer.thickness, "m", 4), elastic(layer.young, layer.poisson))
+        format!(
+            "{} of {}",
+            quantity(layer.thickness, "m", 4),
+            elastic(layer.youngs_modulus, layer.poissons_ratio)
+        )
     });
     let layers: Vec<String> = layers.collect();
     let base = match body.base() {
         Base::Rigid => "a rigid base".to_string(),
-        Base::HalfSpace { young, poisson } => elastic(young, poisson),
+        Base::HalfSpace { youngs_modulus, poissons_ratio } => {
+            elastic(youngs_modulus, poissons_ratio)
+        }
     };
     let against = body.counterpart().map_or_else(
         || "rigid".to_string(),
@@ -79,7 +86,7 @@ mod tests {
     #[test]
     fn layers_are_named_or_given_in_numbers() {
         let layer = |text: &str| text.parse::<LayerArgument>().map(|found| found.layer());
-        let expected = Layer { young: 210e9, poisson: 0.3, thickness: 20e-6 };
+        let expected = Layer { youngs_modulus: 210e9, poissons_ratio: 0.3, thickness: 20e-6 };
         assert_eq!(layer("210e9,0.3,20e-6"), Ok(expected));
         assert_eq!(layer("Steel, 20 µm"), Ok(expected));
         assert_eq!(layer("210GPa,0.3,0.02mm"), Ok(expected));
@@ -97,14 +104,17 @@ mod tests {
         }
         let base = |text: &str| text.parse::<BaseArgument>().map(|found| found.0);
         assert_eq!(base("Rigid"), Ok(Base::Rigid));
-        assert_eq!(base("steel"), Ok(Base::HalfSpace { young: 210e9, poisson: 0.3 }));
+        assert_eq!(
+            base("steel"),
+            Ok(Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 })
+        );
         assert!(base("soft").is_err());
     }
 
     #[test]
     fn bodies_are_said_in_words() -> Result<(), asperity::Error> {
-        let coat = Layer { young: 450e9, poisson: 0.25, thickness: 5e-6 };
-        let steel = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+        let coat = Layer { youngs_modulus: 450e9, poissons_ratio: 0.25, thickness: 5e-6 };
+        let steel = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
         let body = LayeredBody::new(&[coat, Layer { thickness: 1e-3, ..coat }], steel)?;
         assert_eq!(
             described(&body),

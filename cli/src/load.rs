@@ -56,8 +56,8 @@ pub(crate) struct Options {
     loads: Loads,
 
     /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
-    /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the
-    /// two stiffnesses there is only the interfacial one
+    /// pressure outside the surface]; with love and spectral a half-space has the approach of the mean planes, and the
+    /// interfacial stiffness only
     #[arg(long, value_enum)]
     periodic: Option<Periodic>,
 

@@ -49,8 +49,8 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 /// The model: a rigid rough surface is pressed into an elastic half-space, without friction, and with small slopes,
 /// well below 1. Nothing yields, unless a hardness is given, and nothing sticks, unless a work of adhesion is. Two
 /// elastic bodies are equivalent to one with the composite modulus E*. The discrete problem has one pressure for each
-/// cell of the grid. The program solves it to rounding, or prints the remaining error. Every command warns if the grid
-/// is too coarse for the surface.
+/// cell of the grid. The program solves it to rounding, or prints the remaining error. `info`, `path`, `load` and
+/// `patches` warn if the grid is too coarse for the surface.
 ///
 /// Without a command the program follows the path of a generated surface to 10 % contact, in seconds, as an example.
 /// For your own surface: `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path

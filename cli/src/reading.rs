@@ -41,8 +41,8 @@ pub(crate) struct Reading {
     #[arg(long, value_name = "LAYOUT", value_parser = layout, help_heading = "Reading the file")]
     layout: Option<TextLayout>,
 
-    /// Take a NumPy array as an image, [row, column], whose rows are y; without it is [ix, iy]. Rows of all other
-    /// formats are y
+    /// Take a NumPy array as an image, [row, column], whose rows are y; otherwise it is [ix, iy]. Rows of all
+    /// other formats are y
     #[arg(long, help_heading = "Reading the file")]
     rows_are_y: bool,
 

@@ -18,8 +18,8 @@ use crate::shell;
 ///
 /// The page is one file that needs no network and no other file: open it by a double click, or mail it. It has the
 /// order of all events, all scalars, pressure and gap at 24 states, the surface, the bodies, warnings and residuals.
-/// Tables that `asperity slip`, creep, leak and `path --unload` have written beside the record, and not before it, are
-/// shown too. Two records are compared.
+/// Tables that `asperity slip`, creep, leak and `path --unload` have written in the folder of the record are shown too,
+/// unless they are older than it. Two records are compared.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// Files that `asperity path --record` has written: one, or two to compare

@@ -51,7 +51,7 @@ pub(crate) fn print_of(seeds: &[u64], rows: &[Row], grid: &Grid, periodic: Optio
         let yielded = rows.iter().map(|row| row.yielded.unwrap_or(0.0));
         columns.insert(6, Column::percent("yielded", yielded));
     }
-    // A periodic half-space has no contact stiffness.
+    // A half-space that repeats both ways has no contact stiffness.
     let has_k = rows.iter().any(|row| row.contact.contact_stiffness.is_some());
     columns.retain(|column| has_k || column.name() != "K");
     // A profile is as wide as one likes.
@@ -80,9 +80,11 @@ pub(crate) fn print_of(seeds: &[u64], rows: &[Row], grid: &Grid, periodic: Optio
     say!(
         "area: cells in contact; corrected: without the excess of whole cells along the edges of patches (somewhat too small)"
     );
-    match is_of_mean_planes(periodic) {
-        false => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
-        true => say!("approach: of the mean planes, from first touch"),
+    // Layers on a rigid base have an approach of their own, and so a K, where they repeat too.
+    match (has_k, is_of_mean_planes(periodic)) {
+        (true, _) => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
+        (false, true) => say!("approach: of the mean planes, from first touch"),
+        (false, false) => say!("approach: from first touch"),
     }
     if has_yielded {
         say!("yielded: cells at the hardness; they count as contact");

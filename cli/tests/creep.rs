@@ -7,6 +7,7 @@ use std::f64::consts::{E, PI, TAU};
 use std::fs;
 use std::path::Path;
 
+use asperity::io::read_npy;
 use asperity::record::LoadingRecord;
 use common::{Scratch, answer, data, is_refused, number, output, said};
 use serde_json::Value;
@@ -86,6 +87,30 @@ fn a_held_load_is_that_of_the_reference() -> Done {
         assert!(said.contains(words), "{words}: {said}");
     }
     assert!(!folder.join("out").exists());
+    Ok(())
+}
+
+/// More `--pieces` are nearer to the pressure of all states of the path, as near as `docs/rubber_that_creeps.md` says
+/// of 48 × 48 nodes.
+#[test]
+fn more_pieces_are_more_exact() -> Done {
+    let folder = with_record("creep-pieces")?;
+    let pressure = |pieces: usize| -> Result<_, Box<dyn Error>> {
+        let line = format!("creep path.npz {SERIES} --load 3.41e-7 --time 3 --fields npy");
+        run(&folder.0, &format!("{line} --pieces {pieces} --out pieces"))?;
+        Ok(read_npy(folder.join("pieces/pressure.npy"))?)
+    };
+    // As many as there are states, and so exact.
+    let exact = pressure(100_000)?;
+    let off = |pieces| -> Result<f64, Box<dyn Error>> {
+        Ok((pressure(pieces)? - &exact).amax() / exact.max())
+    };
+    let (five, twenty, forty) = (off(5)?, off(20)?, off(40)?);
+    assert!(twenty < 2e-3 && forty < 6e-4, "{twenty} {forty}");
+    assert!(five > 4.0 * twenty && twenty > 2.0 * forty && forty > 0.0, "{five} {twenty} {forty}");
+    // Whatever their number, they bear the load.
+    let load = exact.sum() * 1e-4 / exact.len() as f64;
+    assert!((load / 3.41e-7 - 1.0).abs() < 1e-9, "{load}");
     Ok(())
 }
 

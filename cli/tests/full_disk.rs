@@ -74,6 +74,14 @@ fn a_file_in_place_of_a_folder() -> Done {
     Ok(())
 }
 
+/// Whether a process is stopped, so that it does nothing until it is told to go on.
+fn is_stopped(process: u32) -> std::io::Result<bool> {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat"))?;
+    // The name of the program, in parentheses, is before the letter of the state.
+    Ok(stat.rsplit(')').next().is_some_and(|rest| rest.trim_start().starts_with('T')))
+}
+
+/// The path is told of what cannot be written, at the end, wherever it is when its folder goes.
 #[test]
 fn a_folder_that_is_removed_while_a_path_is_followed() -> Done {
     let folder = Scratch::new("removed")?;
@@ -85,8 +93,17 @@ fn a_folder_that_is_removed_while_a_path_is_followed() -> Done {
         assert!(process.try_wait()?.is_none(), "it has ended too early");
         std::thread::sleep(Duration::from_millis(1));
     }
+    // It is in the middle, and waits there until the folder is gone.
+    let id = process.id();
+    let signal = |name: &str| Command::new("kill").args([name, &id.to_string()]).status();
+    assert!(signal("-STOP")?.success());
+    while !is_stopped(id)? {
+        assert!(process.try_wait()?.is_none(), "it has ended too early");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(out.join("path.csv.part").exists(), "it has ended too early");
     fs::remove_dir_all(&out)?;
-    assert!(process.try_wait()?.is_none(), "it has ended too early");
+    assert!(signal("-CONT")?.success());
     let done = process.wait_with_output()?;
     let names = ["path.csv", "path.npz", "fields.vti", "loading_curve.svg", "contact_map.png"];
     is_refused(&done, &names);

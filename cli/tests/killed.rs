@@ -3,8 +3,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant, SystemTime};
 
 /// A folder that is removed with its test.
 struct Scratch(PathBuf);
@@ -18,6 +18,9 @@ impl Drop for Scratch {
 
 const PATH: [&str; 9] =
     ["path", "--nodes", "64", "--seed", "3", "--max-area-fraction", "0.6", "--updater", "cholesky"];
+
+/// States between two saves of a record.
+const SAVE_EVERY: usize = 100;
 
 fn asperity(arguments: &[&str], out: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
@@ -34,7 +37,20 @@ fn states(file: &Path) -> Vec<Vec<f64>> {
     lines.map(|line| line.split(',').map(number).collect()).collect()
 }
 
-/// The environment variable `ASPERITY_KILLS` gives the number of processes; the seed is fixed.
+/// Waits until something holds, or a process has ended.
+fn wait_for(process: &mut Child, holds: impl Fn() -> bool) {
+    while !holds() && process.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_micros(200));
+    }
+}
+
+/// When a file was written, if it is there.
+fn written(file: &Path) -> Option<SystemTime> {
+    fs::metadata(file).and_then(|data| data.modified()).ok()
+}
+
+/// Processes are killed before their first record, and after records that are spread over the path. The environment
+/// variable `ASPERITY_KILLS` gives the number of processes; the seed is fixed.
 #[test]
 fn killed_paths_go_on() {
     let name = format!("asperity-killed-{}", std::process::id());
@@ -52,11 +68,21 @@ fn killed_paths_go_on() {
         let record = out.join("record.npz");
         fs::create_dir_all(&out).unwrap();
         let record_name = record.to_str().unwrap();
-        let saving = ["--record", record_name, "--save-every", "100"];
+        let saving = ["--record", record_name, "--save-every", &SAVE_EVERY.to_string()];
         let mut process = asperity(&[&PATH[..], &saving].concat(), &out).spawn().unwrap();
-        // Moments spread over the whole run.
-        let share = f64::from(kill + 1) * 0.618_033_988_749_895 % 1.0;
-        std::thread::sleep(Duration::from_secs_f64(share * time.as_secs_f64()));
+        // The first one as soon as it makes states, the others after so many saves and a part of the way to the next
+        // one, on which nothing here depends.
+        let share = f64::from(kill) * 0.618_033_988_749_895 % 1.0;
+        if kill == 0 {
+            wait_for(&mut process, || out.join("path.csv.part").exists());
+        }
+        let saves = f64::from(kill.min(1)) + share * (expected.len() / SAVE_EVERY) as f64;
+        for _ in 0..saves as usize {
+            let before = written(&record);
+            wait_for(&mut process, || written(&record) != before);
+        }
+        let between = time.as_secs_f64() * SAVE_EVERY as f64 / expected.len() as f64;
+        std::thread::sleep(Duration::from_secs_f64(share * between));
         process.kill().unwrap();
         process.wait().unwrap();
         // A record is whole or not there, and a file of states has its name once it is whole.
@@ -80,5 +106,6 @@ fn killed_paths_go_on() {
             }
         }
     }
-    assert!(resumed > 0, "no process lived long enough to write its record");
+    // All but the first one have waited for a record.
+    assert!(resumed + 1 >= kills, "{resumed} of {kills} left a record");
 }

@@ -126,24 +126,21 @@ fn negative_values_are_values() -> Result<(), Box<dyn Error>> {
 #[test]
 fn counts_are_integers() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("integers")?;
-    let object = |line: &str| answer(&folder.0, line);
     fs::copy(common::data("selfaffine_48.npy"), folder.join("rough.npy"))?;
     let path = "--nodes 32 --periodic love --max-area-fraction 0.3";
-    let objects = [
-        object(&format!("path {path} --record r.npz"))?,
-        object("load --surface rough.npy --side 1e-2 --e-star 1 --load 1e-7")?,
-        object("patches r.npz")?,
-        object("leak r.npz --viscosity 1e-3 --pressure-drop 1 --along x --states 3")?,
-        object("slip r.npz --friction 0.3 --load 1e4 --amplitude 1e3")?,
-        object("creep r.npz --prony 0.3,1 --load 1e3 --time 10")?,
-        object("info rough.npy --side 1e-2")?,
-    ];
-    let mut found = 0;
-    for object in &objects {
-        check_counts(object, &mut found);
+    for line in [
+        &format!("path {path} --record r.npz"),
+        "load --surface rough.npy --side 1e-2 --e-star 1 --load 1e-7",
+        "patches r.npz",
+        "leak r.npz --viscosity 1e-3 --pressure-drop 1 --along x --states 3",
+        "slip r.npz --friction 0.3 --load 1e4 --amplitude 1e3",
+        "creep r.npz --prony 0.3,1 --load 1e3 --time 10",
+        "info rough.npy --side 1e-2",
+    ] {
+        let mut found = 0;
+        check_counts(&answer(&folder.0, line)?, &mut found);
+        assert!(found > 0, "{line} answers no counts");
     }
-    // One at least of each.
-    assert!(found >= objects.len(), "{found}");
     Ok(())
 }
 

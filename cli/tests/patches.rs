@@ -4,32 +4,21 @@ mod common;
 
 use std::error::Error;
 use std::fs;
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use asperity::record::LoadingRecord;
 use common::{Scratch, answer, column, number, numbers, run};
 
-/// A folder of one test alone.
-fn folder(name: &str) -> Result<PathBuf, Box<dyn Error>> {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
-    fs::create_dir_all(&folder)?;
-    Ok(folder)
-}
-
-fn asperity(folder: &PathBuf, arguments: &[&str]) -> std::io::Result<Output> {
+fn asperity(folder: &Scratch, arguments: &[&str]) -> std::io::Result<Output> {
     let mut program = Command::new(env!("CARGO_BIN_EXE_asperity"));
-    program.current_dir(folder).args(arguments).output()
+    program.current_dir(&folder.0).args(arguments).output()
 }
 
 /// In full contact of a periodic surface there is one patch of all nodes without an edge, so that nothing is to be
 /// corrected, and at first touch there is one of one node.
 #[test]
 fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
-    let folder = folder("patches")?;
+    let folder = Scratch::new("patches")?;
     let made = asperity(
         &folder,
         &[
@@ -85,7 +74,7 @@ fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
 /// A path that has only touched has an answer for programs too. What is advised names the record as a shell reads it.
 #[test]
 fn a_path_without_load_is_told() -> Result<(), Box<dyn Error>> {
-    let folder = folder("patches_touch")?;
+    let folder = Scratch::new("patches_touch")?;
     let name = "it's one.npz";
     let path = ["path", "--nodes", "16", "--max-area-fraction", "0.004", "--record", name];
     assert!(asperity(&folder, &path)?.status.success());
@@ -107,7 +96,7 @@ fn a_path_without_load_is_told() -> Result<(), Box<dyn Error>> {
 /// A load behind the only event: the patch that carries it is described, though no node has touched under load.
 #[test]
 fn a_load_on_the_first_node_is_described() -> Result<(), Box<dyn Error>> {
-    let folder = folder("patches_one")?;
+    let folder = Scratch::new("patches_one")?;
     let path = ["path", "--nodes", "16", "--max-load", "1uN", "--record", "one.npz"];
     assert!(asperity(&folder, &path)?.status.success());
     let said = String::from_utf8(asperity(&folder, &["patches", "one.npz"])?.stdout)?;

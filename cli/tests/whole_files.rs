@@ -11,7 +11,9 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use common::{Scratch, asperity, data, limited, run, said};
+use asperity::io::read_npy;
+use asperity::record::{AdhesiveRecord, LoadingRecord};
+use common::{Scratch, asperity, data, limited, numbers, run, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -70,12 +72,92 @@ fn place(folder: &Scratch, name: &str) -> std::io::Result<std::path::PathBuf> {
     Ok(place)
 }
 
+/// The loads of a record, which can be read.
+fn loads(record: &Path) -> Result<Vec<f64>, Box<dyn Error>> {
+    let read = LoadingRecord::read_npz(record);
+    Ok(match read {
+        Ok(record) => record.states().iter().map(|state| state.contact.load).collect(),
+        Err(_) => {
+            let record = AdhesiveRecord::read_npz(record)?;
+            record.states().states().iter().map(|state| state.contact.load).collect()
+        }
+    })
+}
+
+/// The last state of a path that broke off in a folder, by the table of the whole one: the one of this load, which is
+/// not before the last that the table so far has.
+fn last_state(place: &Path, whole: &Path, load: f64) -> Result<usize, Box<dyn Error>> {
+    let part = fs::read(place.join("path.csv.part"))?;
+    let lines = part.iter().filter(|byte| **byte == b'\n').count();
+    let loads = numbers(&whole.join("path.csv"), "load")?;
+    // Sums over the nodes are right to rounding, and so are events that are found again.
+    let is_there = |other: &f64| (other / load - 1.0).abs() < 1e-10;
+    let found = loads.iter().rposition(is_there).ok_or_else(|| format!("no state at {load}"))?;
+    assert!(found + 2 >= lines, "{found} is before the end of {lines} lines");
+    Ok(found)
+}
+
+/// Asserts that a file of a path that broke off is whole, and of its states so far.
+fn is_of_the_states_so_far(place: &Path, whole: &Path, name: &str) -> Done {
+    let bytes = fs::read(place.join(name))?;
+    let starts = |begin: &[u8], end: &[u8]| {
+        let is_whole = bytes.starts_with(begin) && bytes.trim_ascii_end().ends_with(end);
+        assert!(is_whole, "{name} is not whole");
+    };
+    let table = whole.join("path.csv");
+    match Path::new(name).extension().and_then(OsStr::to_str).unwrap_or_default() {
+        "json" => assert_eq!(bytes, fs::read(whole.join(name))?, "{name}"),
+        "png" => starts(b"\x89PNG", b"IEND\xaeB`\x82"),
+        "svg" => starts(b"<svg", b"</svg>"),
+        "html" => starts(b"<!", b"</html>"),
+        "vti" => starts(b"<?xml", b"</VTKFile>"),
+        // The last record of an archive without a comment has 22 bytes.
+        "x3p" => assert!(bytes.len() > 22 && bytes[bytes.len() - 22..].starts_with(b"PK\x05\x06")),
+        "npz" => {
+            let (found, expected) = (loads(&place.join(name))?, loads(&whole.join(name))?);
+            assert!(found.len() > 1 && expected.starts_with(&found), "{name}: {found:?}");
+        }
+        "npy" => {
+            let (found, before) = (read_npy(place.join(name))?, read_npy(whole.join(name))?);
+            // Those of single states have other names, and are the same.
+            assert!(["pressure.npy", "gap.npy", "residual_surface.npy"].contains(&name), "{name}");
+            assert_eq!(found.shape(), before.shape(), "{name}");
+            assert!(found.iter().all(|value| value.is_finite()), "{name}");
+            if name == "pressure.npy" {
+                let cell = 1e-4 / found.len() as f64;
+                let last = last_state(place, whole, found.sum() * cell)?;
+                let nodes = found.iter().filter(|pressure| **pressure > 0.0).count();
+                let share = numbers(&table, "contact_area_fraction")?[last];
+                // What has just touched bears nothing yet.
+                let expected = share * found.len() as f64;
+                assert!((nodes as f64 - expected).abs() <= 1.0, "{name}: {nodes} {expected}");
+                let gap = read_npy(place.join("gap.npy"))?.mean();
+                let expected = numbers(&table, "mean_gap")?[last];
+                assert!((gap / expected - 1.0).abs() < 1e-10, "gap.npy: {gap} {expected}");
+            }
+        }
+        "csv" => {
+            // The way back, from the last state.
+            assert_eq!(name, "unloading.csv");
+            let back = numbers(&place.join(name), "load")?;
+            assert!(back.is_sorted_by(|a, b| a >= b), "{back:?}");
+            let last = last_state(place, whole, back[0])?;
+            let found = numbers(&place.join(name), "approach")?[0];
+            let expected = numbers(&table, "approach")?[last];
+            assert!((found / expected - 1.0).abs() < 1e-10, "{name}: {found} {expected}");
+        }
+        _ => panic!("{name} is not known"),
+    }
+    Ok(())
+}
+
 /// No file may be longer than so many blocks, as if the disk were full then. The oracle is what is written without a
-/// limit, byte for byte.
+/// limit, byte for byte. A path whose table finds no room breaks off there, and its files are of its states so far.
 #[test]
 fn on_a_disk_without_room() -> Done {
     let folder = Scratch::new("full")?;
     inputs(&folder.0)?;
+    let mut of_states_so_far = 0;
     for (count, line) in COMMANDS.iter().enumerate() {
         let whole = place(&folder, &format!("whole_{count}"))?;
         run(&whole, line)?;
@@ -90,14 +172,21 @@ fn on_a_disk_without_room() -> Done {
             let done = limited(&place, &limit, &words(line))?;
             let found = files(&place)?;
             let said = said(&done);
-            // A path whose table finds no room breaks off there, and the other files are of its states so far.
-            let breaks_off = place.join("path.csv.part").exists();
+            let part = place.join("path.csv.part");
+            let breaks_off = part.exists();
+            if breaks_off {
+                let so_far = fs::read(&part)?;
+                assert!(expected["path.csv"].starts_with(&so_far), "{line}, {blocks}");
+            }
             for (name, bytes) in &found {
-                let is_whole = match expected.get(name) {
-                    Some(expected) => expected == bytes || breaks_off,
-                    None => false,
-                };
-                assert!(is_whole, "{line}, {blocks}: {name} {said}");
+                let expected = expected.get(name);
+                assert!(expected.is_some(), "{line}, {blocks}: {name} {said}");
+                if expected != Some(bytes) {
+                    assert!(breaks_off, "{line}, {blocks}: {name} {said}");
+                    is_of_the_states_so_far(&place, &whole, name)
+                        .map_err(|error| format!("{line}, {blocks}: {name}: {error}"))?;
+                    of_states_so_far += 1;
+                }
             }
             let missing: Vec<&String> =
                 expected.keys().filter(|name| !found.contains_key(*name)).collect();
@@ -117,15 +206,18 @@ fn on_a_disk_without_room() -> Done {
         }
         assert!(failed > 0, "{line}");
     }
+    assert!(of_states_so_far > 0, "no path broke off with other files than its table");
     Ok(())
 }
 
-/// The environment variable `ASPERITY_KILLS` gives how often each command is killed.
+/// Whenever a command is killed, what has its name by then is what it writes if it is left alone. The environment
+/// variable `ASPERITY_KILLS` gives how often each command is killed.
 #[test]
 fn after_a_kill() -> Done {
     let folder = Scratch::new("kill")?;
     inputs(&folder.0)?;
     let kills: u32 = std::env::var("ASPERITY_KILLS").map_or(Ok(4), |kills| kills.parse())?;
+    let mut found_files = 0;
     for (count, line) in COMMANDS.iter().enumerate() {
         let whole = place(&folder, &format!("whole_{count}"))?;
         let start = Instant::now();
@@ -142,13 +234,19 @@ fn after_a_kill() -> Done {
             process.kill()?;
             process.wait()?;
             let mut found = files(&place)?;
+            found_files += found.len();
             // A record is written once more with the fields of its last state: see `killed.rs`.
-            found.remove("path.npz");
+            if found.remove("path.npz").is_some() {
+                let [found, expected] =
+                    [&place, &whole].map(|place| loads(&place.join("path.npz")));
+                assert!(expected?.starts_with(&found?), "{line}, {kill}: path.npz");
+            }
             for (name, bytes) in found {
                 assert!(expected.get(&name) == Some(&bytes), "{line}, {kill}: {name}");
             }
         }
     }
+    assert!(found_files > 0 || kills == 0, "every command was killed before its first file");
     Ok(())
 }
 

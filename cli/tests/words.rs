@@ -6,11 +6,12 @@ mod common;
 use std::error::Error;
 use std::ffi::OsStr;
 use std::fs;
+use std::path::Path;
 use std::process::Output;
 
-use asperity::io::write_npy;
+use asperity::io::{ReadOptions, read_npy, write_npy};
 use asperity::surface::Topography;
-use common::{Scratch, answer, asperity, data, is_refused, numbers, output, run, said};
+use common::{Scratch, answer, asperity, data, is_refused, number, numbers, output, run, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -148,8 +149,9 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
     for (row, begin) in table[2..6].iter().zip(["0.1000", "0.1000", "0.2000", ""]) {
         assert!(row.trim_start().starts_with(begin), "{words}");
     }
-    assert!(words.contains("wrote out/load.csv"), "{words}");
-    let file = folder.join("out/load.csv");
+    let written = std::path::Path::new("out").join("load.csv");
+    assert!(words.contains(&format!("wrote {}", written.display())), "{words}");
+    let file = folder.0.join(written);
     for (found, expected) in numbers(&file, "load")?.iter().zip([1e-7, 1e-3 * 1e-4, 2e-7]) {
         assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
     }
@@ -219,6 +221,28 @@ fn states_are_asked_for() -> Done {
     Ok(())
 }
 
+/// What repeats on an elastic base has the approach of the mean planes and no K; on a rigid base that gives way it has
+/// both a distant point and a K.
+#[test]
+fn the_legend_explains_the_columns() -> Done {
+    let folder = Scratch::new("legend")?;
+    for (body, has_k) in [
+        ("", true),
+        ("--periodic love", false),
+        ("--periodic x", true),
+        ("--layer gold,1e-4 --base steel --periodic love", false),
+        ("--layer 3e6,0.4,1e-3 --base rigid --periodic love", true),
+        ("--layer 3e6,0.5,1e-3 --base rigid --periodic love", false),
+    ] {
+        let words = printed(&run(&folder.0, &format!("path --nodes 16 {body}"))?);
+        let header = words.lines().find(|line| line.contains("mean gap")).ok_or("no table")?;
+        assert_eq!(header.split_whitespace().any(|name| name == "K"), has_k, "{body}: {words}");
+        assert_eq!(words.contains("K: contact stiffness"), has_k, "{body}: {words}");
+        assert_eq!(words.contains("approach: of the mean planes"), !has_k, "{body}: {words}");
+    }
+    Ok(())
+}
+
 /// Units in options are those of the SI by other names, and tables may be in millimetres.
 #[test]
 fn units_are_understood_and_chosen() -> Done {
@@ -261,6 +285,103 @@ fn units_are_understood_and_chosen() -> Done {
     Ok(())
 }
 
+/// `--channel` chooses among the maps of a file, `--ignore-mask` takes what a mask marks, and `--lateral-unit` is that
+/// of positions: each beside the file, or the answer, that it has to come to.
+#[test]
+fn a_map_a_mask_and_a_unit_are_chosen() -> Done {
+    let folder = Scratch::new("chosen")?;
+    for file in ["plain_i16.spm", "masked.gwy", "plain.gsf", "missing.xyz"] {
+        fs::copy(data(&format!("surface_files/{file}")), folder.join(file))?;
+    }
+    let info = |line: &str| answer(&folder.0, &format!("info {line}"));
+    // By itself it takes the only map that is a length, in nanometres.
+    let heights = info("plain_i16.spm")?;
+    assert_eq!(heights["title"], "Height Sensor");
+    let phase = info("plain_i16.spm --channel Phase --height-unit nm")?;
+    let read = ReadOptions::new().channel("Phase").height_unit("nm".parse()?);
+    let expected = read.read(folder.join("plain_i16.spm"))?.heights;
+    assert_eq!(phase["title"], "Phase");
+    assert_eq!((number(&phase, "min"), number(&phase, "max")), (expected.min(), expected.max()));
+    assert!(number(&phase, "max") != number(&heights, "max"), "{phase}");
+    is_refused(&output(&folder.0, "info plain_i16.spm --channel Height")?, &["Phase"]);
+    // The file without a mask has the same surface, and nothing is missing there.
+    let (masked, ignored) = (info("masked.gwy")?, info("masked.gwy --ignore-mask")?);
+    let plain = info("plain.gsf")?;
+    assert_eq!((&masked["missing"], &ignored["missing"]), (&2.into(), &0.into()));
+    for name in ["min", "max", "mean", "sq", "sa", "rms_gradient"] {
+        let (found, expected) = (number(&ignored, name), number(&plain, name));
+        // The heights of one of them have four bytes.
+        assert!((found / expected - 1.0).abs() < 1e-5, "{name}: {found} {expected}");
+        assert!(name == "min" || number(&masked, name) != found, "{name} of {masked}");
+    }
+    // Heights do not change with it.
+    let [mm, um] = ["mm", "um"].map(|unit| {
+        let of_positions = format!("--lateral-unit {unit}");
+        info(&format!("missing.xyz --height-unit nm {of_positions}"))
+    });
+    let (mm, um) = (mm?, um?);
+    for (name, times) in [("side_x", 1e3), ("side_y", 1e3), ("sq", 1.0), ("rms_gradient", 1e-3)] {
+        let (found, expected) = (number(&mm, name), times * number(&um, name));
+        assert!((found / expected - 1.0).abs() < 1e-12, "{name}: {found} {expected}");
+    }
+    Ok(())
+}
+
+/// Gaps of a single load are those of the path to it, which has no tolerance, to `--tolerance` times the approach.
+#[test]
+fn a_tighter_tolerance_is_nearer() -> Done {
+    let folder = with_surface("tolerance")?;
+    let of = "--surface rough.npy --side 1e-2 --e-star 1";
+    let path = answer(&folder.0, &format!("path {of} --max-load 3.41e-7 --fields npy --out path"))?;
+    let (exact, approach) = (read_npy(folder.join("path/gap.npy"))?, number(&path, "approach"));
+    let mut before = f64::INFINITY;
+    for tolerance in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
+        let line = format!("load {of} --load 3.41e-7 --tolerance {tolerance} --save fields");
+        let done = answer(&folder.0, &line)?;
+        assert!(done["states"][0]["iterations"].as_u64() > Some(0), "{done}");
+        let off = (read_npy(folder.join("fields/gap_341nN.npy"))? - &exact).amax() / approach;
+        assert!(off <= tolerance && off < 0.1 * before, "{tolerance}: {off}, before {before}");
+        before = off;
+    }
+    Ok(())
+}
+
+/// The greatest measures of stress on the screen, which choose their own units, are those of the rows of a file, to
+/// four digits.
+fn greatest_are_those_of_the_rows(words: &str, file: &Path) -> Done {
+    let unit = |name: &str| match name.trim_end_matches(',') {
+        "GPa" => Ok(1e9),
+        "MPa" => Ok(1e6),
+        "µm" => Ok(1e-6),
+        "mm" => Ok(1e-3),
+        other => Err(format!("no unit: {other}")),
+    };
+    for (label, name) in [
+        ("von Mises", "von_mises"),
+        ("Tresca", "tresca"),
+        ("greatest shear", "greatest_shear"),
+        ("greatest tension", "greatest_tension"),
+    ] {
+        let line = words.lines().find_map(|line| line.trim_start().strip_prefix(label));
+        let (value, rest) = line.ok_or(label)?.split_once(" at a depth of ").ok_or("no depth")?;
+        let (depth, node) = rest.split_once(" below node ").ok_or("no node")?;
+        let number = |text: &str| -> Result<f64, Box<dyn Error>> {
+            let (number, name) = text.trim().split_once(' ').ok_or("no unit")?;
+            Ok(number.parse::<f64>()? * unit(name)?)
+        };
+        let values = numbers(file, name)?;
+        let greatest = values.iter().copied().fold(f64::MIN, f64::max);
+        let row = values.iter().position(|value| *value == greatest).ok_or("no row")?;
+        let at = |name: &str| numbers(file, name).map(|column| column[row]);
+        for (found, expected) in [(number(value)?, greatest), (number(depth)?, at("depth")?)] {
+            assert!((found / expected - 1.0).abs() < 5.001e-4, "{label}: {expected} {words}");
+        }
+        let [ix, iy] = [at(&format!("{name}_ix"))?, at(&format!("{name}_iy"))?];
+        assert_eq!(node, format!("({ix}, {iy})"), "{label}");
+    }
+    Ok(())
+}
+
 /// Files are in SI units whatever is chosen, and the rows on the screen are theirs in mm, N and MPa, to four digits.
 #[test]
 fn rows_in_millimetres_are_those_of_the_files() -> Done {
@@ -275,6 +396,7 @@ fn rows_in_millimetres_are_those_of_the_files() -> Done {
         let [si, mm] = ["si", "mm"].map(|name| folder.join(name).join(file));
         assert_eq!(fs::read(&si)?, fs::read(mm)?, "{file}");
         if file == "stress.csv" {
+            greatest_are_those_of_the_rows(&words, &si)?;
             continue;
         }
         let mut table = words.lines().skip_while(|line| !line.contains("mean gap")).skip(1);
@@ -554,5 +676,9 @@ fn patches_say_what_to_run_and_where_a_leak_passes() -> Done {
     let words = printed(&run(&folder.0, "patches p.npz")?);
     assert!(words.contains("seals along x            from state"), "{words}");
     assert!(words.contains("no channel along x: the contact seals"), "{words}");
+    // `stress`, `leak` and `slip` call it so.
+    let [at, as_elsewhere] = ["--at-load", "--load"]
+        .map(|option| run(&folder.0, &format!("patches p.npz --json {option} 100kN")));
+    assert_eq!(printed(&at?), printed(&as_elsewhere?));
     Ok(())
 }

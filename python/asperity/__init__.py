@@ -45,8 +45,8 @@ Where to find it
 Conventions
 -----------
 * Units are SI: m, N, Pa, N/m, J.
-* Arrays are ``[row, column]``: x runs along the columns, y down the rows, as in an image. Sizes are ``(x, y)``. Only a
-  ``.npy`` file that `read` reads, and ``heights()`` of SurfaceTopography, are ``[ix, iy]``.
+* Arrays are ``[row, column]``: x is the column, y the row, as in an image. Sizes are ``(x, y)``. Only a ``.npy`` file
+  that `read` reads, and ``heights()`` of SurfaceTopography, are ``[ix, iy]``.
 * Heights are positive towards the half-space: the highest node touches first. Pressure is positive in compression, a gap
   where the surfaces are apart.
 * The approach counts from first touch; on a periodic half-space it is that of the mean planes.

@@ -30,7 +30,7 @@ use crate::surface::Surface;
 /// e_star : float
 ///     Composite modulus [Pa], ``1/E* = (1 - nu1²)/E1 + (1 - nu2²)/E2``: see `composite_modulus`.
 /// boundary : {"free", "love", "spectral", "x", "y"}
-///     What surrounds the surface. There is no default, because either choice does harm where the other is meant.
+///     What surrounds the surface. There is no default, because each choice is wrong where another is meant.
 ///
 ///     * ``"free"``: nothing; right for a sample of finite size.
 ///     * ``"love"``: the surface repeats with its sides; exact for a uniform pressure on each cell.
@@ -300,12 +300,14 @@ impl HalfSpace {
         let around = choose("boundary", boundary, &AROUND)?;
         let layers = layers.iter().map(|layer| {
             Ok(match layer {
-                LayerArgument::Numbers((young, poisson, thickness)) => {
-                    Layer { young: *young, poisson: *poisson, thickness: *thickness }
-                }
+                LayerArgument::Numbers((youngs_modulus, poissons_ratio, thickness)) => Layer {
+                    youngs_modulus: *youngs_modulus,
+                    poissons_ratio: *poissons_ratio,
+                    thickness: *thickness,
+                },
                 LayerArgument::Named((name, thickness)) => {
-                    let (young, poisson) = materials::named_numbers(name)?;
-                    Layer { young, poisson, thickness: *thickness }
+                    let (youngs_modulus, poissons_ratio) = materials::named_numbers(name)?;
+                    Layer { youngs_modulus, poissons_ratio, thickness: *thickness }
                 }
             })
         });
@@ -313,13 +315,13 @@ impl HalfSpace {
         let base = if base.is("rigid") {
             Base::Rigid
         } else {
-            let (young, poisson) = base.numbers()?;
-            Base::HalfSpace { young, poisson }
+            let (youngs_modulus, poissons_ratio) = base.numbers()?;
+            Base::HalfSpace { youngs_modulus, poissons_ratio }
         };
         let mut body = LayeredBody::new(&layers, base)?;
         if let Some(other) = against.filter(|other| !other.is("rigid")) {
-            let (young, poisson) = other.numbers()?;
-            body = body.against(asperity::plane_strain_modulus(young, poisson)?)?;
+            let (youngs_modulus, poissons_ratio) = other.numbers()?;
+            body = body.against(asperity::plane_strain_modulus(youngs_modulus, poissons_ratio)?)?;
         }
         let e_star = Some(body.surface_modulus());
         Ok(Self::of(Body::Layers { body, around }, e_star))
@@ -446,7 +448,7 @@ impl HalfSpace {
     #[getter]
     fn layers(&self) -> Option<Vec<(f64, f64, f64)>> {
         let Body::Layers { body, .. } = &self.body else { return None };
-        let numbers = |layer: &Layer| (layer.young, layer.poisson, layer.thickness);
+        let numbers = |layer: &Layer| (layer.youngs_modulus, layer.poissons_ratio, layer.thickness);
         Some(body.layers().iter().map(numbers).collect())
     }
 
@@ -455,7 +457,9 @@ impl HalfSpace {
     fn base(&self) -> Option<(f64, f64)> {
         match &self.body {
             Body::Layers { body, .. } => match body.base() {
-                Base::HalfSpace { young, poisson } => Some((young, poisson)),
+                Base::HalfSpace { youngs_modulus, poissons_ratio } => {
+                    Some((youngs_modulus, poissons_ratio))
+                }
                 Base::Rigid => None,
             },
             _ => None,

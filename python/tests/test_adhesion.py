@@ -65,6 +65,16 @@ def test_both_branches_are_those_of_the_program(surface: asp.Surface, program: C
     assert opened.states == path.states and opened.e_star == path.e_star == 1e6
 
 
+def test_the_law_has_what_it_was_made_of() -> None:
+    """The work of adhesion, and what else it was given."""
+    law = asp.Adhesion(0.05, cohesive_stress=2e5)
+    assert (law.work_of_adhesion, law.adhesion_range, law.cohesive_stress) == (0.05, None, 2e5)
+    assert STICKY.work_of_adhesion == 0.05 and STICKY != asp.Adhesion(0.1)
+    for wrong in (-0.05, float("nan"), float("inf")):
+        with pytest.raises(errors.AsperityError, match="work of adhesion"):
+            asp.Adhesion(wrong)
+
+
 def test_forces_and_loops(surface: asp.Surface) -> None:
     path = pressed(surface)
     assert path.state is None and path.end is None and path.shape == (32, 32) and path.size == (SIDE, SIDE)

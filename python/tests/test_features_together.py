@@ -37,6 +37,7 @@ ROWS: dict[str, tuple[list[object], Callable[[], asp.HalfSpace], dict[str, Any]]
     "non-square cells": (["--side", 1e-2, "--side-y", 1.5e-2], half_space, {}),
     "full contact": (["--periodic", "love"], lambda: half_space("love"), {"area_fraction": 1.0}),
     "hardness": (["--hardness", 3e9], half_space, {"hardness": 3e9}),
+    # The program takes no map: here all nodes have one hardness, and `test_a_map_of_hardness` has others.
     "hardness per node": (["--hardness", 3e9], half_space, {"hardness": np.full((NODES, NODES), 3e9)}),
     "fully plastic": (["--hardness", 1e8], half_space, {"hardness": 1e8, "mean_pressure": 9.99999e7}),
     "after unloading": ([], half_space, {"mean_pressure": 1e8}),
@@ -117,23 +118,45 @@ def test_python(row: str, program: Callable[..., str], tmp_path: Path) -> None:
             asp.patches(path)
     else:
         same(path, record)
-    if row == "hardness per node":
-        # A map of other values is that of the surface turned round.
-        rows, columns = np.indices((NODES, NODES))
-        hard = np.where((rows + 2 * columns) % 3 == 0, np.inf, 2e9 * (1.5 + np.sin(rows)))
-        found, turned = followed(row, hardness=hard), asp.load_path(
-            z.transpose(), half_space(), hardness=hard.T, check=False, area_fraction=0.3
-        )
-        turned.run(check=False)
-        np.testing.assert_allclose(turned.history.load, found.history.load, rtol=1e-10)
-        np.testing.assert_allclose(turned.pressure(), found.pressure().T, atol=1e-9 * found.pressure().max())
-        assert found.history.yielded_nodes[-1] > 5 and (found.pressure() <= hard).all()
     if row == "fully plastic":
         # Behind full contact of what is left unloading begins all the same.
         back, last = path.unload().columns(), path.history[-1]
         assert last.yielded_nodes > 0.9 * NODES**2
         assert back["load"][0] == pytest.approx(last.load, rel=1e-10)
         assert back["approach"][0] == pytest.approx(last.approach, rel=1e-10)
+
+
+def test_a_map_of_hardness(program: Callable[..., str], tmp_path: Path) -> None:
+    """The program goes on with the map of a record from Python, along the path of Python; a map that is turned round is another one."""
+    rows, columns = np.indices((NODES, NODES))
+    hard = np.where((rows + 2 * columns) % 3 == 0, np.inf, 2e9 * (1.5 + np.sin(rows)))
+    found = followed("hardness per node", hardness=hard)
+    history = found.history
+    # The pressure that a node bears is at most its own hardness, and many bear that, each the one of its place.
+    pressure = found.pressure()
+    assert history.yielded_nodes[-1] > 5 and (pressure <= hard).all()
+    assert (pressure == hard).sum() == history.yielded_nodes[-1]
+    half = asp.load_path(found.surface, half_space(), hardness=hard, area_fraction=0.1, check=False)
+    half.run(check=False)
+    half.save(tmp_path / "half.npz")
+    ends = ["--max-area-fraction", 0.3, "--record", tmp_path / "whole.npz", "--out", tmp_path / "out"]
+    program("path", "--resume", tmp_path / "half.npz", *ends)
+    whole = np.load(tmp_path / "whole.npz")
+    for name, column in {"ix": history.column, "iy": history.row, "event": history.event_code, "yielded_nodes": history.yielded_nodes}.items():
+        np.testing.assert_array_equal(whole[name], column, err_msg=name)
+    # Ten digits are promised of a path that was interrupted. Mean gaps are small differences of the first one.
+    for name in ("load", "approach", "plastic_volume", "plastic_work"):
+        np.testing.assert_allclose(whole[name], getattr(history, name), rtol=1e-10, atol=1e-14 * abs(whole[name]).max(), err_msg=name)
+    np.testing.assert_allclose(whole["pressure"].T, pressure, atol=1e-9 * pressure.max())
+    # With the surface turned round as well it is the same path, and alone it is not.
+    for z, is_same in ((found.surface.transpose(), True), (found.surface, False)):
+        turned = asp.load_path(z, half_space(), hardness=hard.T, area_fraction=0.3, check=False)
+        turned.run(check=False)
+        if is_same:
+            np.testing.assert_allclose(turned.history.load, history.load, rtol=1e-10)
+            np.testing.assert_allclose(turned.pressure(), pressure.T, atol=1e-9 * pressure.max())
+        else:
+            assert turned.history.load[-1] != pytest.approx(history.load[-1], rel=1e-3)
 
 
 def answers(of: asp.LoadingPath | asp.History) -> list[object]:
@@ -211,6 +234,11 @@ def test_what_is_refused_is_what_the_page_says(row: str) -> None:
     cells = dict(zip(columns, rows[row], strict=True))
     path = followed(row)
     patches, slip, creep, plain, table, conductance = answers(path)
+    if cells["unload"] == "yes":
+        assert path.unload().columns()["load"][0] == pytest.approx(path.state.load, rel=1e-10)
+    else:
+        with pytest.raises(ValueError, match="goes back through the same states"):
+            path.unload()
     assert isinstance(plain, str) or row == "stiff layer"
     for name, found in {"patches": patches, "slip": slip, "creep": creep, "FE table": table, "conductance": conductance}.items():
         is_refused = isinstance(found, tuple)

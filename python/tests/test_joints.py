@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -58,6 +59,50 @@ def test_bounds(path: asp.LoadingPath) -> None:
     assert (lower[known] <= found[known] * (1 + 1e-12)).all() and (upper[known] >= found[known] * (1 - 1e-12)).all()
 
 
+# What Abaqus and CalculiX have of one row: the stiffness, or the displacement at which it slips.
+FRICTION = {"tangential_stiffness", "elastic_slip"}
+
+
+def column_of(columns: dict[str, np.ndarray], name: str) -> np.ndarray:
+    """A column of a table, or what follows from two of them."""
+    return columns["slip_limit"] / columns["tangential_stiffness"] if name == "elastic_slip" else columns[name]
+
+
+def read_back(program: str, text: str) -> dict[str, np.ndarray]:
+    """The columns of a table as another program reads them: the numbers below each keyword, or of each function."""
+    found: dict[str, np.ndarray] = {}
+    if program == "csv":
+        header, *lines = text.splitlines()
+        rows = np.array([line.split(",") for line in lines], dtype=float)
+        found = dict(zip(header.split(","), rows.T, strict=True))
+    elif program == "moose":
+        function = r"\[(\w+)_of_(\w+)\]\s+type = PiecewiseLinear\s+x = '([^']*)'\s+y = '([^']*)'"
+        for name, of, x, y in re.findall(function, text):
+            name = "thermal_conductance" if name == "conductance" else name
+            for column, values in ((of, x), (name, y)):
+                numbers = np.array(values.split(), dtype=float)
+                np.testing.assert_array_equal(found.setdefault(column, numbers), numbers, err_msg=column)
+    else:
+        below: dict[str, list[list[float]]] = {}
+        for line in text.splitlines():
+            if line.startswith("*") and not line.startswith("**"):
+                keyword, *options = line.split(",")
+                rows_below = below.setdefault(keyword, [])
+                for option in options:
+                    if "ELASTIC SLIP" in option:
+                        found["elastic_slip"] = np.array([float(option.split("=")[1])])
+            elif not line.startswith("*"):
+                rows_below.append([float(cell) for cell in line.split(",")])
+        found["pressure"], found["overclosure"] = np.array(below["*SURFACE BEHAVIOR"]).T
+        found["thermal_conductance"], pressure = np.array(below["*GAP CONDUCTANCE"]).T
+        np.testing.assert_array_equal(pressure, found["pressure"])
+        coefficient, *stiffness = below["*FRICTION"][0]
+        assert coefficient == 0.3
+        if stiffness:
+            found["tangential_stiffness"] = np.array(stiffness)
+    return found
+
+
 def test_tables(path: asp.LoadingPath) -> None:
     history = path.history
     table = asp.interface_table(path, resistivity=0.05, friction=0.3, compliance_ratio=1.2, tolerance=0.01)
@@ -73,10 +118,19 @@ def test_tables(path: asp.LoadingPath) -> None:
     between = np.interp(pressure[inside], columns["pressure"], columns["thermal_conductance"])
     np.testing.assert_allclose(between, whole[inside], rtol=0.0101)
     assert list(asp.interface_table(history).columns()) == ["pressure", "overclosure"]
-    # Every row is in every text: the last overclosure, with the twelve digits or so that they have.
+    # Every row of every column is in the texts, with the twelve digits or so that they have.
     for program in ("abaqus", "calculix", "moose", "csv"):
-        text = table.text(program)  # type: ignore[arg-type]
-        assert f"{columns['overclosure'][-1]:.8e}"[:8] in text.replace("E", "e") and str(len(table)) not in ("0", "1"), program
+        found = read_back(program, table.text(program))  # type: ignore[arg-type]
+        assert {"pressure", "overclosure", "thermal_conductance"} < set(found), program
+        for name, column in found.items():
+            # Friction of Abaqus and CalculiX has the last row alone.
+            expected = column_of(columns, name)[-len(column) :]
+            assert len(column) == (1 if program in ("abaqus", "calculix") and name in FRICTION else len(table)), (program, name)
+            np.testing.assert_allclose(column, expected, rtol=1e-11, err_msg=f"{program}: {name}")
+        if program in ("moose", "csv"):
+            assert set(found) == set(columns), program
+        else:
+            assert FRICTION & set(found), program
     with pytest.raises(ValueError, match="program"):
         table.text("ansys")  # type: ignore[arg-type]
     ratio = asp.shear(path, friction=0.3, bodies=("steel", "glass"), check=False).compliance_ratio

@@ -29,7 +29,41 @@ def test_a_uniform_gap() -> None:
             assert leak.permeability == pytest.approx((2e-6) ** 3 / 12e-3, rel=1e-9)
             assert leak.flowing_nodes == 600 and leak.pools == 0
             assert np.isnan(leak.transverse_permeability) != periodic
-            assert len(leak.sections) in ((30, 29, 31) if along == "x" else (20, 19, 21))
+            # From edge to edge: one more than there are nodes along the flow. The fluid is conserved.
+            assert len(leak.sections) == (31 if along == "x" else 21)
+            np.testing.assert_allclose(leak.sections, leak.leak_rate, rtol=1e-11)
+
+
+def test_gaps_that_count_as_closed() -> None:
+    """Of a groove in a shallower gap ``least_gap`` leaves the groove, and nothing of gaps that are all as narrow."""
+    gap, contact = np.full((20, 30), 1e-6), np.zeros((20, 30), dtype=bool)
+    gap[3] = 2e-6
+    assert asp.Seal(1e-3, 1e5, along="x").least_gap == 0.0
+    groove = (2e-6) ** 3 / 12e-3 * 1e5 * 1e-4 / 3e-3
+    ground = 19 / 8 * groove
+    for least, expected in ((0.0, groove + ground), (0.99e-6, groove + ground), (1e-6, groove), (1.99e-6, groove), (2e-6, 0.0)):
+        seal = asp.Seal(1e-3, 1e5, along="x", least_gap=least)
+        assert seal.least_gap == least
+        assert seal.leak_of(gap, contact, (3e-3, 2e-3), periodic=False).leak_rate == pytest.approx(expected, rel=1e-9)
+    with pytest.raises(errors.AsperityError):
+        asp.Seal(1e-3, 1e5, along="x", least_gap=-1e-9)
+
+
+def test_gases() -> None:
+    """A gas that leaves at p2 leaks (p1 + p2) / 2 p2 times as much as a liquid, as a volume at p2, and p^2 is linear in a uniform gap."""
+    gap, contact = np.full((20, 30), 2e-6), np.zeros((20, 30), dtype=bool)
+    assert asp.Seal(1e-3, 1e5, along="x").outlet_pressure is None
+    liquid = asp.Seal(1e-3, 1e5, along="x").leak_of(gap, contact, (3e-3, 2e-3), periodic=False)
+    seal = asp.Seal(1e-3, 1e5, along="x", outlet_pressure=2.5e4)
+    assert seal.outlet_pressure == 2.5e4
+    gas = seal.leak_of(gap, contact, (3e-3, 2e-3), periodic=False)
+    assert gas.leak_rate == pytest.approx(liquid.leak_rate * (1.25e5 + 2.5e4) / 5e4, rel=1e-9)
+    # Above that of the outlet, in the middle of each cell.
+    place = (np.arange(30) + 0.5) / 30
+    expected = np.sqrt(1.25e5**2 - (1.25e5**2 - 2.5e4**2) * place) - 2.5e4
+    np.testing.assert_allclose(gas.pressure, np.broadcast_to(expected, (20, 30)), rtol=1e-9)
+    with pytest.raises(errors.AsperityError):
+        asp.Seal(1e-3, 1e5, along="x", outlet_pressure=0.0)
 
 
 def test_the_channel_is_where_it_is() -> None:

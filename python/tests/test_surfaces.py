@@ -343,3 +343,14 @@ def test_profiles() -> None:
     with pytest.raises(asp.AsperityError) as refused:
         asp.example_surface(nodes=32).profile_parameters()
     assert refused.value.value == 32
+
+
+def test_titles_are_those_of_the_maps() -> None:
+    """A surface has the name of its map in its file, and keeps it; one of an array has none."""
+    surface = asp.read(FILES / "masked.gwy", ignore_mask=True)
+    assert surface.title == "made"
+    assert asp.read(FILES / "plain_i16.spm").title == "Height Sensor"
+    with pytest.warns(asp.AsperityWarning, match="taken to be in nm"):
+        phase = asp.read(FILES / "plain_i16.spm", channel="Phase", height_unit="nm")
+    assert phase.title == "Phase"
+    assert asp.Surface(surface.z, size=surface.size).title == ""

@@ -9,6 +9,7 @@ import sys
 import textwrap
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -18,6 +19,21 @@ import asperity as asp
 from asperity import _asperity
 
 POSIX = os.name == "posix"
+
+
+def signal_when(holds: Callable[[], object], number: int = signal.SIGINT) -> list[float]:
+    """Sends a signal to this process as soon as something holds: when it was sent, once it was."""
+    sent: list[float] = []
+
+    def wait() -> None:
+        last = time.monotonic() + 60.0
+        while not holds() and time.monotonic() < last:
+            time.sleep(0.001)
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), number)
+
+    threading.Thread(target=wait, daemon=True).start()
+    return sent
 
 
 @pytest.fixture
@@ -85,13 +101,11 @@ def test_results_do_not_depend_on_the_number_of_threads(rough: asp.Surface, body
 @pytest.mark.skipif(not POSIX, reason="signals of POSIX")
 def test_ctrl_c_in_the_middle_of_a_path(long_path: asp.LoadingPath) -> None:
     """KeyboardInterrupt, and the path goes on after."""
-    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
-    start = time.monotonic()
+    sent = signal_when(lambda: len(long_path.history) > 100)
     with pytest.raises(KeyboardInterrupt):
         long_path.run(check=False)
     # At the next window, and not at the end.
-    assert time.monotonic() - start < 2.0
+    assert time.monotonic() - sent[0] < 2.0
     done = len(long_path.history)
     assert 0 < done < int(0.35 * 160 * 160) and long_path.end is None
     assert long_path.pressure().max() > 0.0
@@ -136,10 +150,10 @@ def test_ctrl_c_in_a_sweep() -> None:
     half_space = asp.HalfSpace(115e9, boundary="free")
     expected = [one.contact_nodes for one in asp.sweep(surface, half_space, loads, check=False)]
     sweep = asp.sweep(surface, half_space, loads, check=False)
-    timer = threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
     found: list[int] = []
     interrupted = 0
+    # In the second one, which takes many times as long as it takes to see that the first one is there.
+    signal_when(lambda: found)
     while len(found) < 3:
         try:
             found.append(next(sweep).contact_nodes)
@@ -248,8 +262,9 @@ def test_a_sweep_in_two_threads() -> None:
 def test_handlers_of_signals_may_ask_what_is_under_way(long_path: asp.LoadingPath) -> None:
     """A handler runs in the middle of a path and of a sweep, in the same thread: nothing is locked then."""
     surface = asp.example_surface(nodes=512)
-    sweep = asp.sweep(surface, asp.HalfSpace(115e9, boundary="free"), [1e4], check=False)
+    sweep = asp.sweep(surface, asp.HalfSpace(115e9, boundary="free"), [1e4, 2e4], check=False)
     told: list[str] = []
+    solved: list[asp.Solution] = []
 
     def in_a_path(number: int, frame: object) -> None:
         told.append(f"path {len(long_path.history)} {next(long_path).step} {long_path.pressure().max()}")
@@ -259,12 +274,18 @@ def test_handlers_of_signals_may_ask_what_is_under_way(long_path: asp.LoadingPat
             next(sweep)
         told.append("sweep")
 
+    def both() -> asp.Solution:
+        solved.append(next(sweep))
+        return next(sweep)
+
     before = signal.getsignal(signal.SIGUSR1)
     try:
-        for handler, call in [(in_a_path, lambda: long_path.run(check=False)), (in_a_sweep, lambda: next(sweep))]:
-            signal.signal(signal.SIGUSR1, handler)
-            threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGUSR1)).start()
-            assert call() is not None
+        signal.signal(signal.SIGUSR1, in_a_path)
+        signal_when(lambda: len(long_path.history) > 100, signal.SIGUSR1)
+        assert long_path.run(check=False) is not None
+        signal.signal(signal.SIGUSR1, in_a_sweep)
+        signal_when(lambda: solved, signal.SIGUSR1)
+        assert both().load == 2e4
     finally:
         signal.signal(signal.SIGUSR1, before)
     assert [words.split()[0] for words in told] == ["path", "sweep"]

@@ -35,9 +35,9 @@ pub(crate) fn of(record: &LoadingRecord) -> Result<Vec<Value>, Error> {
     if let Some(body) = layered(&record.kernel().origin) {
         facts.extend(layers(body));
     }
-    for (number, (young, poisson)) in (1..).zip(record.bodies()) {
-        facts.push(fact(&format!("body {number}: Young's modulus"), *young, "Pa"));
-        facts.push(fact(&format!("body {number}: Poisson's ratio"), *poisson, ""));
+    for (number, (youngs_modulus, poissons_ratio)) in (1..).zip(record.bodies()) {
+        facts.push(fact(&format!("body {number}: Young's modulus"), *youngs_modulus, "Pa"));
+        facts.push(fact(&format!("body {number}: Poisson's ratio"), *poissons_ratio, ""));
     }
     if let [_] = record.bodies() {
         facts.push(fact("body 2", "rigid", ""));
@@ -90,15 +90,15 @@ fn layers(body: &LayeredBody) -> Vec<Value> {
     let mut facts = Vec::new();
     for (number, layer) in (1..).zip(body.layers()) {
         let name = |what: &str| format!("layer {number}: {what}");
-        facts.push(fact(&name("Young's modulus"), layer.young, "Pa"));
-        facts.push(fact(&name("Poisson's ratio"), layer.poisson, ""));
+        facts.push(fact(&name("Young's modulus"), layer.youngs_modulus, "Pa"));
+        facts.push(fact(&name("Poisson's ratio"), layer.poissons_ratio, ""));
         facts.push(fact(&name("thickness"), layer.thickness, "m"));
     }
     match body.base() {
         Base::Rigid => facts.push(fact("base", "rigid", "")),
-        Base::HalfSpace { young, poisson } => {
-            facts.push(fact("base: Young's modulus", young, "Pa"));
-            facts.push(fact("base: Poisson's ratio", poisson, ""));
+        Base::HalfSpace { youngs_modulus, poissons_ratio } => {
+            facts.push(fact("base: Young's modulus", youngs_modulus, "Pa"));
+            facts.push(fact("base: Poisson's ratio", poissons_ratio, ""));
         }
     }
     facts.push(match body.counterpart() {

@@ -69,7 +69,7 @@ pub(crate) struct Options {
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(super) fields: Option<Format>,
 
-    /// Fields of the path that the pressure is made of: the more, the nearer
+    /// Number of fields of the path that are summed to the pressure: more are more exact
     #[arg(long, value_name = "N", default_value_t = 40, requires = "fields", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) pieces: u32,
 

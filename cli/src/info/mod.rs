@@ -45,8 +45,8 @@ pub(crate) struct Options {
     #[command(flatten)]
     reading: Reading,
 
-    /// Cut-off wavelength of the roughness of a profile, as 0.8mm: its parameters are Ra, Rz, ... then [default: Pa,
-    /// Pz, ... of the primary profile]
+    /// Cut-off wavelength of the roughness of a profile, as 0.8mm, for Ra, Rz, ... [default: Pa, Pz, ... of the
+    /// primary profile]
     #[arg(long, value_name = "METRES", value_parser = LENGTH.positive())]
     cutoff: Option<f64>,
 

@@ -19,12 +19,12 @@ pub(crate) struct Fluid {
     #[arg(long, value_name = "PA", value_parser = PRESSURE.positive())]
     pub(super) pressure_drop: f64,
 
-    /// The fluid is an ideal gas, which leaves at this absolute pressure: leak rates are volumes there, and its
-    /// throughput is told too
+    /// The fluid is an ideal gas, which leaves at this absolute pressure: leak rates are volumes there, and the
+    /// throughput is printed
     #[arg(long, value_name = "PA", value_parser = PRESSURE.positive())]
     gas_outlet_pressure: Option<f64>,
 
-    /// Gap through which nothing flows any more, and through narrower ones [default: only contact closes]
+    /// Gap at and below which nothing flows [default: only contact closes]
     #[arg(long, value_name = "METRES", value_parser = LENGTH.positive())]
     least_gap: Option<f64>,
 
@@ -36,9 +36,9 @@ pub(crate) struct Fluid {
 /// [`Axis`] on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Along {
-    /// The first index of an array, the columns of an image
+    /// From the first column of an image to the last, along the first index of an array
     X,
-    /// The second index of an array, the rows of an image
+    /// From the first row of an image to the last, along the second index of an array
     Y,
 }
 

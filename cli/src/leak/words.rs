@@ -90,18 +90,18 @@ pub(super) fn print_curve(curve: &LeakCurve, record: &LoadingRecord, seal: &Seal
         ),
         Column::new("mean field", "m³/s", of(|point| point.mean_field_leak_rate)),
         Column::percent(
-            "drop there",
+            "drop share",
             of(|point| point.constriction.map_or(f64::NAN, |c| c.pressure_drop)),
         ),
         Column::percent(
-            "lost there",
+            "power share",
             of(|point| point.constriction.map_or(f64::NAN, |c| c.dissipation)),
         ),
     ]);
     say!();
     say!("narrowest: the least gap of the widest channel");
     say!(
-        "drop there: share of the pressure drop at that cell; lost there: share of the power in the 9 x 9 cells about it"
+        "drop share: of the pressure drop, at that cell; power share: of the power, in the 9 x 9 cells about it"
     );
     say!("mean field: Bruggeman's estimate for a random mixture of these gaps");
     match &curve.closing {
@@ -156,8 +156,8 @@ pub(super) fn print_leak(state: &LoadingState, leak: &Leak, seal: &Seal) {
         "  the fluid flows through {}; {} cut off; conserved to {:.0e}",
         counted(leak.flowing_nodes, "node"),
         match leak.pools {
-            1 => "1 pool is".to_string(),
-            pools => format!("{pools} pools are"),
+            1 => "1 island is".to_string(),
+            islands => format!("{islands} islands are"),
         },
         leak.imbalance
     );

@@ -42,7 +42,8 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Load of the state that is described [default: the last state]
-    #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive(), conflicts_with = "at_area_fraction")]
+    // Elsewhere the option is --load.
+    #[arg(long, visible_alias = "load", value_name = "NEWTONS", value_parser = FORCE.positive(), conflicts_with = "at_area_fraction")]
     at_load: Option<f64>,
 
     /// Contact area over nominal area of the state that is described

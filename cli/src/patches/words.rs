@@ -37,7 +37,7 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
     );
     let and_across = match record.kernel().boundary {
         Boundary::Free => "",
-        _ => ", with the periodic border across open to it",
+        _ => "; both may pass a border across that repeats",
     };
     say!(
         "the contact percolates when one patch extends from end to end, and seals when no channel does any more{and_across}"

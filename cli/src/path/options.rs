@@ -56,7 +56,7 @@ pub(crate) struct Options {
     pub(super) surface: Option<PathBuf>,
 
     /// File with the heights of the other body, if both are rough: on the same grid, seen from outside like the first.
-    /// It is turned over about y, so that both face each other; --fill, --level and what else is said of a file is done
+    /// It is turned over about y, so that both face each other; --fill, --level and the other options for a file apply
     /// to both
     // clap does not ask for what an option requires beside another one that excludes it: so these are excluded, too.
     #[arg(long, value_name = "FILE", requires = "surface", conflicts_with_all = ["nodes", "seed", "seeds", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy"], help_heading = "Bodies")]
@@ -84,14 +84,14 @@ pub(crate) struct Options {
     pub(super) sticking: Sticking,
 
     /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
-    /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the
-    /// two stiffnesses there is only the interfacial one
+    /// pressure outside the surface]; with love and spectral a half-space has the approach of the mean planes, and the
+    /// interfacial stiffness only
     #[arg(long, value_enum)]
     pub(super) periodic: Option<Periodic>,
 
-    /// States of which table, maps (contact_map_5MPa.png) and --fields are: a load over nominal area, a load, or a
-    /// contact area, as in 5MPa,50MPa or 10N or 2mm2 or 10%. A bare number is a mean pressure in Pa. Without another
-    /// end the path ends at the last of them
+    /// States for the table, the maps (contact_map_5MPa.png) and --fields: mean pressures, loads or contact areas, as
+    /// in 5MPa,50MPa or 10N or 2mm2 or 10%. A bare number is a mean pressure in Pa. Without another end the path ends
+    /// at the last of them
     #[arg(long, value_name = "STATE,...", value_delimiter = ',')]
     pub(super) at: Vec<At>,
 

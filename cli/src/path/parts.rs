@@ -27,10 +27,15 @@ fn hardness(map: Option<&DMatrix<f64>>) -> Value {
 /// none.
 fn layers(body: Option<&LayeredBody>) -> Value {
     let Some(body) = body else { return Value::Null };
-    let layers = body.layers().iter().map(|layer| [layer.young, layer.poisson, layer.thickness]);
+    let layers = body
+        .layers()
+        .iter()
+        .map(|layer| [layer.youngs_modulus, layer.poissons_ratio, layer.thickness]);
     let base = match body.base() {
         Base::Rigid => json!("rigid"),
-        Base::HalfSpace { young, poisson } => json!([young, poisson]),
+        Base::HalfSpace { youngs_modulus, poissons_ratio } => {
+            json!([youngs_modulus, poissons_ratio])
+        }
     };
     json!({"layers": layers.collect::<Vec<_>>(), "base": base, "against": body.counterpart()})
 }

@@ -32,8 +32,8 @@ use body::Moment;
 ///
 /// Writes stress.csv (the greatest value of each measure at each depth, for each body), stress.png, maps of von Mises'
 /// stress and of the greatest shear stress at the depths where they are greatest (von_mises_map.png, shear_map.png),
-/// and vertical sections of von Mises' stress through its greatest value (section_x.png, section_y.png); all but the
-/// first two of the body, or of the first of two.
+/// and vertical sections of von Mises' stress through its greatest value (section_x.png, section_y.png); maps and
+/// sections are of the first body.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("ratio").args(["poisson", "material"])))]
 pub(crate) struct Options {
@@ -57,8 +57,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME|E,NU", requires = "material", conflicts_with = "poisson")]
     against: Option<Material>,
 
-    /// Yield stress of the body, of layers one for all or one for each from the uppermost to the base: the load at which
-    /// von Mises' stress in each material reaches it is looked for along the path
+    /// Yield stress of the body, of layers one for all or one for each from the uppermost to the base: prints the load
+    /// at which von Mises' stress reaches it in each material
     #[arg(long, value_name = "PA,...", value_delimiter = ',', value_parser = PRESSURE.positive())]
     yield_stress: Vec<f64>,
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use asperity::Grid;
+use asperity::kernel::Base;
 use asperity::stress::Measure;
 use asperity_cli::field_map::{FieldMap, Scale};
 use asperity_cli::number::quantity;
@@ -50,7 +51,10 @@ impl Section {
 /// How deep sections and the volume reach \[m\].
 fn reach(moment: &Moment, body: &Body) -> f64 {
     let depth = body.survey.greatest(Measure::VonMises).depth;
-    (DEEP * depth).max(LEAST * moment.record.grid().cell_area().sqrt())
+    let deep = (DEEP * depth).max(LEAST * moment.record.grid().cell_area().sqrt());
+    // There is no stress in a rigid base.
+    let layers = body.below.layers().filter(|layers| layers.base() == Base::Rigid);
+    layers.map_or(deep, |layers| deep.min(layers.thickness()))
 }
 
 /// The distance of so many depths that reach down to one.

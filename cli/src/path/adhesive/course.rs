@@ -38,11 +38,25 @@ pub(super) struct Followed {
 }
 
 impl Followed {
-    /// The branches of loading and of unloading.
+    /// The last branch of loading, and that of unloading behind it. A record may have more of both before.
     pub(super) fn branches(&self) -> [AdhesiveBranch; 2] {
+        let states = &self.states[self.turn()..];
         [Direction::Loading, Direction::Unloading].map(|direction| {
-            self.states.iter().filter(|state| state.direction == direction).copied().collect()
+            states.iter().filter(|state| state.direction == direction).copied().collect()
         })
+    }
+
+    /// The state from which the last branch of loading begins, if it does not begin from where the surfaces are apart.
+    pub(super) fn before_loading(&self) -> Option<AdhesiveState> {
+        Some(self.states[self.turn().checked_sub(1)?])
+    }
+
+    /// How many states there are before the last branch of loading.
+    fn turn(&self) -> usize {
+        let turns = |pair: &[AdhesiveState]| {
+            [Direction::Unloading, Direction::Loading] == [pair[0].direction, pair[1].direction]
+        };
+        self.states.windows(2).rposition(turns).map_or(0, |before| before + 1)
     }
 
     /// The last state of loading.

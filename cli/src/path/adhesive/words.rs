@@ -1,10 +1,10 @@
 //! What both branches are read for.
 
-use asperity::adhesion::{AdhesiveBranch, AdhesiveEvent, AdhesiveState};
+use asperity::adhesion::{AdhesiveEvent, AdhesiveState};
 
 use super::course::Followed;
 
-/// The extremes of both branches, and what they cost.
+/// The extremes of both branches, of the last ones if there are more, and what they cost.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Pulled {
     /// The last state of loading.
@@ -20,23 +20,25 @@ pub(in super::super) struct Pulled {
 impl Pulled {
     pub(super) fn of(followed: &Followed) -> Self {
         let [loading, unloading] = followed.branches();
-        let jumps = followed.states.iter();
-        let jumps = jumps.filter(|state| state.event == AdhesiveEvent::JumpEnd).count();
+        let states = || loading.states().iter().chain(unloading.states());
+        let lost = |state: Option<AdhesiveState>| state.map_or(0.0, |state| state.dissipated);
+        let pressed = followed.pressed();
+        // Unloading begins at the last state of loading, which may be pulled most.
+        let unloading =
+            pressed.iter().filter(|_| !unloading.states().is_empty()).chain(unloading.states());
         Self {
-            pressed: followed.pressed(),
-            pull_in: greatest_pull(&loading),
-            // It begins at the last state of loading.
-            pull_off: greatest_pull(&unloading),
-            dissipated: followed.states.last().map_or(0.0, |state| state.dissipated),
-            jumps,
+            pressed,
+            pull_in: greatest_pull(loading.states().iter()),
+            pull_off: greatest_pull(unloading),
+            dissipated: lost(followed.states.last().copied()) - lost(followed.before_loading()),
+            jumps: states().filter(|state| state.event == AdhesiveEvent::JumpEnd).count(),
         }
     }
 }
 
 /// The state of the least load.
-fn greatest_pull(branch: &AdhesiveBranch) -> Option<AdhesiveState> {
-    let states = branch.states().iter().copied();
-    states.min_by(|a, b| a.contact.load.total_cmp(&b.contact.load))
+fn greatest_pull<'a>(states: impl Iterator<Item = &'a AdhesiveState>) -> Option<AdhesiveState> {
+    states.copied().min_by(|a, b| a.contact.load.total_cmp(&b.contact.load))
 }
 
 /// The pull of a state \[N\], 0 where nothing pulls.
