@@ -66,7 +66,7 @@ pub(crate) enum Body {
 impl Body {
     fn elastic(&self) -> Result<(f64, f64), Fault> {
         match self {
-            Self::Given(young, poisson) => Ok((*young, *poisson)),
+            Self::Given(youngs_modulus, poissons_ratio) => Ok((*youngs_modulus, *poissons_ratio)),
             Self::Named(name) => {
                 let known = Material::named(name);
                 let elastic = known.map(|body| (body.youngs_modulus, body.poissons_ratio));

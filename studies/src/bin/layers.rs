@@ -29,7 +29,7 @@ use asperity_studies::study;
 use clap::Parser;
 
 const QUADRATURE: &str = include_str!("../../../tests/data/layers_free.csv");
-const STEEL: Base = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+const STEEL: Base = Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 };
 
 /// Coated and thin bodies.
 #[derive(Debug, Parser)]
@@ -83,8 +83,13 @@ fn run(options: &Options) -> Result<(), Failure> {
     section.show(options.report.as_deref())
 }
 
-fn one_layer(young: f64, poisson: f64, thickness: f64, base: Base) -> Result<LayeredBody, Error> {
-    LayeredBody::new(&[Layer { young, poisson, thickness }], base)
+fn one_layer(
+    youngs_modulus: f64,
+    poissons_ratio: f64,
+    thickness: f64,
+    base: Base,
+) -> Result<LayeredBody, Error> {
+    LayeredBody::new(&[Layer { youngs_modulus, poissons_ratio, thickness }], base)
 }
 
 /// Greatest errors of coefficients beside those of a quadrature.
@@ -100,7 +105,7 @@ fn quadrature(text: &mut String) -> Result<(), Error> {
     for case in lines.chunks(7) {
         let base = match case[0][3] {
             0.0 => Base::Rigid,
-            young => Base::HalfSpace { young, poisson: case[0][4] },
+            youngs_modulus => Base::HalfSpace { youngs_modulus, poissons_ratio: case[0][4] },
         };
         let kernel = Layered::free(grid, one_layer(case[0][0], case[0][1], case[0][2], base)?)?;
         for line in case {
@@ -131,7 +136,7 @@ fn padded(text: &mut String) -> Result<(), Error> {
          felt.\n\n\
          | body | 1 | 2 | 4 | 8 |\n|---|---:|---:|---:|---:|\n"
     );
-    let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+    let steel = Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 };
     for (name, body) in [
         ("soft coat, E₁/E₂ = 0.1, h = 5 cells", one_layer(0.1, 0.3, 5.0, steel)?),
         ("stiff coat, E₁/E₂ = 10, h = 5 cells", one_layer(10.0, 0.3, 5.0, steel)?),
@@ -170,12 +175,12 @@ fn padded(text: &mut String) -> Result<(), Error> {
 
 /// The bodies whose iterations are counted, on cells of 1: a half-space, five layers, a thick and a thin one.
 fn counted() -> Result<Vec<(&'static str, Option<LayeredBody>)>, Error> {
-    let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+    let steel = Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 };
     // Six layers of two cells, from a tenth of the modulus at the surface to that of the base.
     let graded: Vec<Layer> = (0..6)
         .map(|k| Layer {
-            young: 10_f64.powf(f64::from(k) / 6.0 - 1.0),
-            poisson: 0.3,
+            youngs_modulus: 10_f64.powf(f64::from(k) / 6.0 - 1.0),
+            poissons_ratio: 0.3,
             thickness: 2.0,
         })
         .collect();
@@ -298,8 +303,8 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
     let h = 20e-6;
     let e_star = plane_strain_modulus(210e9, 0.3).map_err(failed)?;
     let plain: Box<dyn InfluenceKernel> = Box::new(Boussinesq::new(grid, e_star).map_err(failed)?);
-    let coated = |young: f64| -> Result<Box<dyn InfluenceKernel>, Error> {
-        Ok(Box::new(Layered::free(grid, one_layer(young, 0.3, h, STEEL)?)?))
+    let coated = |youngs_modulus: f64| -> Result<Box<dyn InfluenceKernel>, Error> {
+        Ok(Box::new(Layered::free(grid, one_layer(youngs_modulus, 0.3, h, STEEL)?)?))
     };
     let bodies = [
         ("soft coat, 21 GPa", ORANGE, coated(21e9).map_err(failed)?),

@@ -126,6 +126,8 @@ struct Written {
     is_plain: bool,
     /// Whether a line says that it is a map.
     is_declared: bool,
+    /// Numbers of a first row that are no heights of the map, if its rows have no more than two.
+    above: Option<(f64, f64)>,
     name: &'static str,
 }
 
@@ -184,7 +186,8 @@ fn matrix(map: &Map, dialect: &Dialect, rng: &mut ChaCha8Rng) -> Written {
     // Fewer random numbers are evenly spaced by chance now and then.
     let is_plain = map.is_rough && !along_x && !along_y && nx > 5 && ny > 5;
     let is_declared = !header.is_empty();
-    Written { text: dialect.text(&header, &rows), is_plain, is_declared, name: "map.txt" }
+    let above = (along_x && !along_y && nx == 2).then_some((start, start + steps.0));
+    Written { text: dialect.text(&header, &rows), is_plain, is_declared, above, name: "map.txt" }
 }
 
 fn list(map: &Map, dialect: &Dialect, rng: &mut ChaCha8Rng) -> Written {
@@ -237,12 +240,53 @@ fn list(map: &Map, dialect: &Dialect, rng: &mut ChaCha8Rng) -> Written {
     let is_plain =
         is_named && !has_index && !has_more && map.nx > 1 && map.ny > 1 && points.len() > 3;
     let file = if rng.random_bool(0.5) { "list.xyz" } else { "list.csv" };
-    Written { text: dialect.text(&header, &rows), is_plain, is_declared: false, name: file }
+    let text = dialect.text(&header, &rows);
+    Written { text, is_plain, is_declared: false, above: None, name: file }
+}
+
+/// How far positions may be from even steps, in steps, and still be taken as they are.
+const EVEN: f64 = 1e-3;
+
+fn is_same(a: f64, b: f64) -> bool {
+    a == b || a.is_nan() && b.is_nan()
+}
+
+/// Whether this is the profile of these positions and heights: the heights as they are where the steps are even, and
+/// those on straight lines between them where they are not.
+fn is_profile(found: &MeasuredSurface, mut points: Vec<(f64, f64)>) -> bool {
+    if points.first().map(|point| point.0) > points.last().map(|point| point.0) {
+        points.reverse();
+    }
+    let ([(first, _), ..], [.., (last, _)]) = (&points[..], &points[..]) else {
+        return false;
+    };
+    let step = (last - first) / (points.len() - 1) as f64;
+    let place = |k: usize| first + step * k as f64;
+    let is_even = points.iter().enumerate().all(|(k, p)| (p.0 - place(k)).abs() <= EVEN * step);
+    let is_there = |k: usize, z: f64| {
+        // Positions and their steps are dyadic, and what is halfway between is so to rounding.
+        let near = |other: f64| (z - other).abs() < 1e-9 * (1.0 + other.abs());
+        let is_at = |p: &&(f64, f64)| (p.0 - place(k)).abs() < 1e-9 * step;
+        match points.iter().find(is_at) {
+            Some(point) => is_same(z, point.1) || near(point.1),
+            None => points.windows(2).any(|pair| {
+                let ((x, before), (next, after)) = (pair[0], pair[1]);
+                let expected = before + (place(k) - x) / (next - x) * (after - before);
+                x < place(k) && place(k) < next && (near(expected) || is_same(z, expected))
+            }),
+        }
+    };
+    found.heights.shape() == (points.len(), 1)
+        && found.cell.is_some_and(|(side, _)| (side / step - 1.0).abs() < 1e-12)
+        && found.heights.iter().enumerate().all(|(k, z)| match is_even {
+            true => is_same(*z, points[k].1),
+            false => is_there(k, *z),
+        })
 }
 
 /// Whether this is the map; sides of it of which nothing was measured may lack if that is said.
-fn is_map(found: &MeasuredSurface, map: &Map, is_declared: bool) -> bool {
-    let is_same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
+fn is_map(found: &MeasuredSurface, map: &Map, written: &Written) -> bool {
+    let (is_declared, above) = (written.is_declared, written.above);
     let (nx, ny) = found.heights.shape();
     let written = |ix: usize, iy: usize| map.heights[iy * map.nx + ix];
     if found.understood.starts_with("a profile") {
@@ -251,7 +295,9 @@ fn is_map(found: &MeasuredSurface, map: &Map, is_declared: bool) -> bool {
         let heights = (0..map.ny).map(|iy| written(0, iy));
         let in_order = heights.zip(&found.heights).all(|(a, b)| is_same(a, *b));
         let is_one = map.nx == 1 && (nx, ny) == (map.ny, 1) && in_order;
-        return !is_declared && (map.nx == 2 || is_one);
+        let rows = (0..map.ny).map(|iy| (written(0, iy), written(1, iy)));
+        let is_two = || map.nx == 2 && is_profile(found, above.into_iter().chain(rows).collect());
+        return !is_declared && (is_one || is_two());
     }
     let columns =
         if found.understood.contains("empty cells") { 0..=map.nx.abs_diff(nx) } else { 0..=0 };
@@ -287,7 +333,7 @@ proptest! {
             if is_list { list(&map, &dialect, rng) } else { matrix(&map, &dialect, rng) };
         match metre.read_bytes(&written.text, written.name) {
             Ok(found) => prop_assert!(
-                is_map(&found, &map, written.is_declared),
+                is_map(&found, &map, &written),
                 "{found} for {} x {}, {:?} {}, {dialect:?}\n{}",
                 map.nx, map.ny, found.notes, found.understood, written.text
             ),
