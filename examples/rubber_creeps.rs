@@ -73,7 +73,7 @@ fn main() -> Result<(), Error> {
     let contact = history.contact_sequence(grid)?;
     let found = Percolation::of(&contact, Boundary::Periodic, Connectivity::Eight);
     let times = creep.times();
-    match found.leak_x.and_then(|nodes| times.get(nodes - 1)) {
+    match found.seal_x.and_then(|nodes| times.get(nodes - 1)) {
         Some(time) => println!("the last channel along x closes after {time:.2} s"),
         None => println!("a channel along x stays open"),
     }

@@ -53,8 +53,8 @@ fn main() -> Result<(), Error> {
         for (what, nodes) in [
             ("a patch along x", found.contact_x),
             ("a patch along y", found.contact_y),
-            ("no channel along x", found.leak_x),
-            ("no channel along y", found.leak_y),
+            ("no channel along x", found.seal_x),
+            ("no channel along y", found.seal_y),
         ] {
             // The number of nodes in contact is the number of the state.
             let state = nodes.and_then(|nodes| events.get(nodes.checked_sub(1)?));

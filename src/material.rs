@@ -102,7 +102,7 @@ impl HardnessScale {
 }
 
 impl Material {
-    /// Steel, which stands for metals where nothing is said.
+    /// Steel: what the programs take for a body of which nothing is said.
     pub const STEEL: Self = Self::of("steel", 210e9, 0.3, Some(2.5e9));
 
     /// All that there are.
@@ -125,10 +125,10 @@ impl Material {
         Self::of("polycarbonate", 2.4e9, 0.37, Some(0.15e9)),
         Self::of("ptfe", 0.5e9, 0.46, Some(0.03e9)),
         Self::of("rubber", 2e6, 0.5, None),
-        // Coats: diamond-like carbon, titanium nitride, chromium nitride.
-        Self::of("dlc", 200e9, 0.22, Some(20e9)),
-        Self::of("tin", 450e9, 0.25, Some(22e9)),
-        Self::of("crn", 300e9, 0.25, Some(18e9)),
+        // Coats. TiN is no name: in any case it is tin, too.
+        Self::of("diamond-like-carbon", 200e9, 0.22, Some(20e9)),
+        Self::of("titanium-nitride", 450e9, 0.25, Some(22e9)),
+        Self::of("chromium-nitride", 300e9, 0.25, Some(18e9)),
     ];
 
     const fn of(
@@ -140,12 +140,17 @@ impl Material {
         Self { name, youngs_modulus, poissons_ratio, hardness }
     }
 
-    /// The material of this name, in any case, with spaces for hyphens; aluminum is aluminium.
+    /// The material of this name, in any case, with spaces for hyphens; aluminum is aluminium, and DLC diamond-like
+    /// carbon.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         const ALL: &[Material] = &Material::ALL;
         let name = name.trim().to_lowercase().replace(' ', "-");
-        let name = if name == "aluminum" { "aluminium" } else { &name };
+        let name = match &*name {
+            "aluminum" => "aluminium",
+            "dlc" => "diamond-like-carbon",
+            name => name,
+        };
         ALL.iter().find(|material| material.name == name)
     }
 }
@@ -164,12 +169,14 @@ mod tests {
             assert_eq!(Material::named(material.name), Some(material));
             assert!(Material::ALL[..k].iter().all(|other| other.name != material.name));
         }
-        assert_eq!(Material::named("stone"), None);
+        assert_eq!(["stone", "tin", "TiN"].map(Material::named), [None; 3]);
         for (name, known) in [
             ("Steel", "steel"),
             ("PTFE", "ptfe"),
             (" Stainless Steel", "stainless-steel"),
             ("Aluminum", "aluminium"),
+            ("DLC", "diamond-like-carbon"),
+            ("Titanium nitride", "titanium-nitride"),
         ] {
             assert_eq!(Material::named(name).map(|material| material.name), Some(known));
         }

@@ -29,8 +29,8 @@ pub(crate) fn from_end_to_end<T>(
     [
         passage("percolates along x", "percolates_x", found.contact_x),
         passage("percolates along y", "percolates_y", found.contact_y),
-        passage("seals along x", "seals_x", found.leak_x),
-        passage("seals along y", "seals_y", found.leak_y),
+        passage("seals along x", "seals_x", found.seal_x),
+        passage("seals along y", "seals_y", found.seal_y),
     ]
 }
 
@@ -46,8 +46,8 @@ pub(crate) fn around<T>(
     let passages = [
         (x, "a patch winds along x", "patch_winds_x", found.contact_x),
         (y, "a patch winds along y", "patch_winds_y", found.contact_y),
-        (x, "no channel winds along x", "no_channel_winds_x", found.leak_x),
-        (y, "no channel winds along y", "no_channel_winds_y", found.leak_y),
+        (x, "no channel winds along x", "no_channel_winds_x", found.seal_x),
+        (y, "no channel winds along y", "no_channel_winds_y", found.seal_y),
     ];
     let repeats = passages.into_iter().filter(|(repeats, ..)| *repeats);
     repeats.map(|(_, name, key, nodes)| Passage { name, key, at: nodes.and_then(&at) }).collect()

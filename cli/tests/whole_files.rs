@@ -146,7 +146,7 @@ fn is_of_the_states_so_far(place: &Path, whole: &Path, name: &str) -> Done {
             let expected = numbers(&table, "approach")?[last];
             assert!((found / expected - 1.0).abs() < 1e-10, "{name}: {found} {expected}");
         }
-        _ => panic!("{name} is not known"),
+        _ => return Err(format!("{name} is not known").into()),
     }
     Ok(())
 }

@@ -136,14 +136,14 @@ class Percolation:
     ----------
     contact_x, contact_y : State or None
         The first state at which one patch alone leads all the way.
-    leak_x, leak_y : State or None
+    seal_x, seal_y : State or None
         The first state at which no channel does: from there on the gap seals.
     """
 
     contact_x: State | None
     contact_y: State | None
-    leak_x: State | None
-    leak_y: State | None
+    seal_x: State | None
+    seal_y: State | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,7 +160,7 @@ class Distribution(_WithArrays):
         Probability density in each bin.
     outside : int
         Number of values in no bin.
-    contact_share : float
+    contact_area_fraction : float
         The share of nodes in contact.
     """
 
@@ -168,7 +168,7 @@ class Distribution(_WithArrays):
     counts: NDArray[np.int64]
     density: NDArray[np.float64]
     outside: int
-    contact_share: float
+    contact_area_fraction: float
 
 
 @dataclass(frozen=True, eq=False)

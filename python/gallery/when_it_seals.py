@@ -17,7 +17,7 @@ path = asp.load_path(surface, rubber)
 history = path.run(check=False)
 
 analysis = asp.patches(path)
-seal = analysis.percolation().leak_x
+seal = analysis.percolation().seal_x
 assert seal is not None
 print(f"sealed along x at {seal.area_fraction:.1%} contact, under {seal.mean_pressure / 1e6:.2f} MPa")
 

@@ -223,8 +223,8 @@ def test_the_creep_of_the_program(program: Callable[..., str], record: Path, tmp
     for name, state in {
         "percolates_x": passages.contact_x,
         "percolates_y": passages.contact_y,
-        "seals_x": passages.leak_x,
-        "seals_y": passages.leak_y,
+        "seals_x": passages.seal_x,
+        "seals_y": passages.seal_y,
     }.items():
         time = times[state.step - 1] if state is not None and state.step <= len(times) else np.inf
         assert told[name] == (time if time <= 50.0 else None), name

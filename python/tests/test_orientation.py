@@ -108,7 +108,7 @@ def test_fields_have_the_axes_of_the_heights(tmp_path: Path) -> None:
     percolation = analysis.percolation()
     # A ridge along x: contact goes on along x, and no fluid gets along y.
     assert percolation.contact_x is not None and percolation.contact_y is None
-    assert percolation.leak_y is not None and percolation.leak_x is None
+    assert percolation.seal_y is not None and percolation.seal_x is None
     assert not np.isnan(analysis.activation()[4]).any()
     assert np.isnan(np.delete(analysis.activation(), 4, axis=0)).all()
     labels = asp.label_patches(path.contact_map(), surface.size, periodic=True)

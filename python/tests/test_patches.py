@@ -119,7 +119,7 @@ def test_when_it_percolates_and_seals(rough: asp.Surface) -> None:
     percolation = found.percolation()
     assert percolation == found.winding()  # on a free boundary
     # Where contact leads along one axis, no channel does along the other.
-    assert percolation.leak_x == percolation.contact_y and percolation.leak_y == percolation.contact_x
+    assert percolation.seal_x == percolation.contact_y and percolation.seal_y == percolation.contact_x
     state = percolation.contact_x
     assert state is not None
     for at, leads in [(state, True), (history[state.step - 2], False)]:
@@ -151,14 +151,14 @@ def test_it_seals_where_the_leak_ends() -> None:
         found = asp.patches(path, connectivity=connectivity)  # type: ignore[arg-type]
         seals, winds = found.percolation(), found.winding()
         for along, state, around in (
-            ("x", seals.leak_x, winds.leak_x),
-            ("y", seals.leak_y, winds.leak_y),
+            ("x", seals.seal_x, winds.seal_x),
+            ("y", seals.seal_y, winds.seal_y),
         ):
             assert state is not None and around is not None and around.step <= state.step
             before = history[state.step - 2]
             assert asp.Seal(1e-3, 1.0, along=along).curve(path, states=3).closing == state  # type: ignore[arg-type]
             assert path.constriction(along, state) is None and path.constriction(along, before)  # type: ignore[arg-type]
-        assert winds.leak_x != seals.leak_x
+        assert winds.seal_x != seals.seal_x
         assert seals.contact_x is not None and winds.contact_x is not None
         assert seals.contact_x.step <= winds.contact_x.step
 
@@ -168,7 +168,7 @@ def test_distributions(rough: asp.Surface, body: asp.HalfSpace) -> None:
     pressure = asp.pressure_distribution(one.pressure, one.contact_map, bins=20)
     assert pressure.counts.sum() == one.contact_nodes and len(pressure.edges) == 21
     assert (pressure.density * np.diff(pressure.edges)).sum() == pytest.approx(1.0, rel=1e-12)
-    assert pressure.contact_share == one.area_fraction
+    assert pressure.contact_area_fraction == one.area_fraction
     gap = asp.gap_distribution(one.gap, one.contact_map, per_decade=4)
     assert gap.counts.sum() + gap.outside == (~one.contact_map).sum()
     with pytest.raises(asp.AsperityError, match="not both"):

@@ -26,7 +26,7 @@ state = history.at(load=120.0)
 total: np.float64 = path.pressure(state).sum()
 one = asp.solve(surface, body, load=250.0)
 gaps = [solution.mean_gap for solution in asp.sweep(surface, body, [1.0, 2.0])]
-if (seal := asp.patches(path, connectivity=8).percolation().leak_x) is not None:
+if (seal := asp.patches(path, connectivity=8).percolation().seal_x) is not None:
     print(seal.load)
 reveal_type(path.contact_map())
 """

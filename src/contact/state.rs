@@ -11,9 +11,8 @@ use crate::Grid;
 /// in contact.
 ///
 /// In full contact, that of a flat surface under no load too, the mean gap is exactly 0 and the interfacial stiffness
-/// infinite. Nodes that touch at one approach have a state each, of which only the last lasts: the others have the
-/// stiffnesses of the nodes taken so far, without a factor nearly. Where nodes may yield, they have those of equal
-/// steps without one.
+/// infinite. Nodes that touch at one approach have a state each; only the stiffness of the last one lasts. The earlier ones
+/// have that of the nodes taken so far, nearly so on a path without a factor, and in equal steps there with a hardness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -45,7 +45,7 @@ pub struct CycleSettings {
 }
 
 impl Default for CycleSettings {
-    /// Half a percent of the energy that an elastic solid with tan φ = 0.1 would lose comes of the steps.
+    /// Half a percent of the energy that a viscoelastic solid with tan φ = 0.1 would lose comes of the steps.
     fn default() -> Self {
         Self { steps: 96, tolerance: 1e-5, most: 10_000 }
     }

@@ -63,9 +63,10 @@ impl FixedLoadSolver {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the load; [`Error::NoConvergence`] with the best residual;
-    /// [`Error::FactorizationFailed`] if the kernel is not positive definite on the contact;
-    /// [`Error::MemoryBudget`] if more nodes are in contact than fit.
+    /// [`Error::NotPositive`] for the load; [`Error::OutOfRange`] for one so far from the others that numbers overflow;
+    /// [`Error::BeyondHardness`] for one that the hardness cannot bear; [`Error::NoConvergence`] with the best residual;
+    /// [`Error::FactorizationFailed`] if the kernel is not positive definite on the contact; [`Error::MemoryBudget`] if
+    /// more nodes are in contact than fit.
     pub fn solve(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
         self.stepper().step_to_load(load)
     }
@@ -108,8 +109,8 @@ impl FixedLoadSolver {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::solve`] and [`Self::solve_approach`]; [`Error::OutOfRange`] for an area
-    /// fraction or a mean gap that cannot be; [`Error::NoConvergence`] if the load is not found, as on an
+    /// Those of [`Self::solve`] and [`Self::solve_approach`]; [`Error::OutOfRange`] for an area fraction or a mean gap
+    /// that cannot be; [`SurfaceError::LessThanOneNode`](crate::SurfaceError::LessThanOneNode); [`Error::NoConvergence`] if the load is not found, as on an
     /// ill-conditioned user-defined kernel where a loose tolerance leaves the mean gap uncertain.
     pub fn solve_target(&mut self, target: ContactTarget) -> Result<FixedLoadSolution, Error> {
         solve_target(&mut self.stepper(), target)

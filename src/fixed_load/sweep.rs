@@ -31,6 +31,7 @@ use crate::contact::ContactTarget;
 /// # Ok(())
 /// # }
 /// ```
+#[must_use = "nothing is solved before it is iterated over"]
 #[derive(Debug)]
 pub struct LoadSweep<'a, I> {
     stepper: Stepper<'a>,

@@ -89,9 +89,9 @@ impl Conduction {
     /// ```math
     /// h = k\, \frac{A_0 - A}{\bar g_\mathrm{open} + M} ,
     /// ```
-    /// with the mean gap of the open nodes, $`\bar g_\mathrm{open} = \bar g A_0 / (A_0 - A)`$. It is a model: both ways
-    /// are taken to share nothing but their ends; and since 1/(g + M) is convex in g, the mean over all gaps is no
-    /// less.
+    /// with the mean gap of the open nodes, $`\bar g_\mathrm{open} = \bar g A_0 / (A_0 - A)`$. It is a model: the two
+    /// ways share nothing but their ends; and h takes the mean gap, although the mean of k/(g + M) over all gaps is
+    /// never less, since 1/(g + M) is convex in g.
     ///
     /// # Errors
     ///

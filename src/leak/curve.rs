@@ -158,8 +158,8 @@ fn closing(history: &History, path: &LoadingPath, along: Axis) -> Result<Option<
     // Of the channels alone, whatever joins patches.
     let found = Percolation::of(&contact, path.problem().boundary(), Connectivity::Eight);
     let nodes = match along {
-        Axis::X => found.leak_x,
-        Axis::Y => found.leak_y,
+        Axis::X => found.seal_x,
+        Axis::Y => found.seal_y,
     };
     let touches =
         history.states().iter().enumerate().filter(|(_, s)| s.event == ContactEvent::Touch);

@@ -11,8 +11,8 @@ use crate::{Error, Grid};
 
 /// The states of a path in the order of loading, to be read at any instant between them.
 ///
-/// Between two events a path is linear in the approach, so that every reading is exact. The pressure that
-/// goes with it is [`LoadingPath::fields_at`](super::LoadingPath::fields_at).
+/// Between two events a path is linear in the approach, so that every reading is as exact as the states beside it. The
+/// pressure that goes with it is [`LoadingPath::fields_at`](super::LoadingPath::fields_at).
 ///
 /// ```
 /// use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};

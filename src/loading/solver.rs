@@ -1,6 +1,7 @@
 //! The iterator over contact states.
 
 use std::any::Any;
+use std::fmt;
 use std::iter::FusedIterator;
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
@@ -39,10 +40,16 @@ use crate::updater::{Handover, LinearUpdater};
 ///
 /// It is a thin shell: `U` says which [`LinearUpdater`] solves on the contact, and all else is that of the
 /// [`LoadingPath`] that it dereferences to, which is compiled once for all of them.
-#[derive(Debug)]
+#[must_use = "a path is computed as it is iterated over"]
 pub struct LoadingSolver<U = Handover> {
     path: LoadingPath,
     updater: PhantomData<fn() -> U>,
+}
+
+impl<U> fmt::Debug for LoadingSolver<U> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LoadingSolver").field("path", &self.path).finish()
+    }
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {

@@ -12,12 +12,13 @@ pub struct FieldDistribution {
     /// The histogram of the nodes counted; its density has the integral 1 if none lies outside.
     pub histogram: Histogram,
     /// The share of nodes in contact, A/A₀.
-    pub contact_share: f64,
+    pub contact_area_fraction: f64,
 }
 
 /// The distribution of the pressure \[Pa\] over the nodes in contact.
 ///
-/// Its density times [`contact_share`](FieldDistribution::contact_share) is that over the nominal area, with the
+/// Its density times [`contact_area_fraction`](FieldDistribution::contact_area_fraction) is that over the nominal area,
+/// with the
 /// integral A/A₀, which [`AreaLoadLaw::persson_density`](crate::reference::AreaLoadLaw::persson_density) is to be
 /// compared with. The node that touches at a state of a path has no pressure yet, and is in contact.
 ///
@@ -39,7 +40,7 @@ pub fn pressure_distribution(
 /// ```math
 /// P(g) = \frac{A}{A_0}\, \delta(g) + \left(1 - \frac{A}{A_0}\right) P_\mathrm{out}(g)
 /// ```
-/// with the density $`P_\mathrm{out}`$ of the histogram, and the [`contact_share`](FieldDistribution::contact_share)
+/// with the density $`P_\mathrm{out}`$ of the histogram, and the [`contact_area_fraction`](FieldDistribution::contact_area_fraction)
 /// A/A₀ as the weight of a closed gap.
 ///
 /// # Errors
@@ -70,6 +71,6 @@ fn over(
     let touching = contact_map.iter().filter(|is_in| **is_in).count();
     Ok(FieldDistribution {
         histogram: Histogram::new(counted.map(|(value, _)| *value), bins)?,
-        contact_share: touching as f64 / field.len() as f64,
+        contact_area_fraction: touching as f64 / field.len() as f64,
     })
 }

@@ -32,8 +32,8 @@
 //!     println!("{} patches under {} N", patches.patches, state.contact.load);
 //! }
 //! let percolation = Percolation::of(&contact, boundary, Connectivity::Eight);
-//! println!("no channel along x from {:?} nodes on", percolation.leak_x);
-//! # assert!(percolation.leak_x.is_some());
+//! println!("no channel along x from {:?} nodes on", percolation.seal_x);
+//! # assert!(percolation.seal_x.is_some());
 //! # Ok(())
 //! # }
 //! ```

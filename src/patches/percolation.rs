@@ -19,7 +19,7 @@ pub(super) const CHANNELS: Connectivity = Connectivity::Four;
 /// * [`of`](Self::of), *from end to end*: a patch or a channel leads from one end of the grid to the other. Where the
 ///   boundary repeats along the other direction it may lead across that border; the border between the ends is cut.
 ///   This is a seal, with the fluid before one end and behind the other, and what percolation and sealing mean
-///   everywhere in this crate: [`Seal`](crate::leak::Seal) finds a leak exactly before `leak_x`.
+///   everywhere in this crate: [`Seal`](crate::leak::Seal) finds a leak exactly before `seal_x`.
 /// * [`winding`](Self::winding), *around the grid*: along a direction in which the boundary repeats, a patch or a
 ///   channel winds around the grid, and so goes on without end in the repeated surface. One that climbs as it winds
 ///   around goes on along both directions. What winds around leads from end to end as well, but what leads from end to
@@ -28,8 +28,8 @@ pub(super) const CHANNELS: Connectivity = Connectivity::Four;
 ///
 /// Patches have the `connectivity` given. Channels pass through the sides of cells, as [flow](crate::leak) does,
 /// whatever the connectivity, so that a patch and a channel never cross. With [`Connectivity::Eight`] on a free
-/// boundary one of the two leads along one direction exactly if the other does not lead along the other: `leak_x` is
-/// `contact_y`, and `leak_y` is `contact_x`.
+/// boundary one of the two leads along one direction exactly if the other does not lead along the other: `seal_x` is
+/// `contact_y`, and `seal_y` is `contact_x`.
 ///
 /// Nodes that never touch are open throughout. Both take O(n α(n)), the channels from the last state backwards.
 ///
@@ -44,7 +44,7 @@ pub(super) const CHANNELS: Connectivity = Connectivity::Four;
 /// let contact = ContactSequence::with_order(grid, [3, 5, 4])?;
 /// let found = Percolation::of(&contact, Boundary::Free, Connectivity::Eight);
 /// assert_eq!((found.contact_x, found.contact_y), (Some(3), None));
-/// assert_eq!((found.leak_x, found.leak_y), (None, Some(3)));
+/// assert_eq!((found.seal_x, found.seal_y), (None, Some(3)));
 /// # Ok(())
 /// # }
 /// ```
@@ -56,9 +56,9 @@ pub struct Percolation {
     /// The same along y.
     pub contact_y: Option<usize>,
     /// The first state at which no channel leads along x: it seals.
-    pub leak_x: Option<usize>,
+    pub seal_x: Option<usize>,
     /// The same along y.
-    pub leak_y: Option<usize>,
+    pub seal_y: Option<usize>,
 }
 
 impl Percolation {
@@ -103,8 +103,8 @@ impl Percolation {
         Self {
             contact_x: of_contact(Axis::X),
             contact_y: of_contact(Axis::Y),
-            leak_x: of_channels(Axis::X),
-            leak_y: of_channels(Axis::Y),
+            seal_x: of_channels(Axis::X),
+            seal_y: of_channels(Axis::Y),
         }
     }
 }

@@ -50,8 +50,8 @@ impl Perimeter {
     /// ```
     /// with `n` nodes in contact, `Δ` the side of a cell and $`S_d`$ the length of the perimeter along the sides of
     /// cells. A cell counts as a whole although the edge of the contact runs through it, and `c` is what is too much
-    /// on average over straight edges of all directions. On a Hertz contact the correction removes most of the error,
-    /// and some 20 % too much.
+    /// on average over straight edges of all directions. On a Hertz contact the correction overshoots: it takes away
+    /// some 120 % of the error.
     ///
     /// Where dx ≠ dy, each side counts with the cell's extent across it, $`S_d Δ \to (n_x\, dx)\, dy +
     /// (n_y\, dy)\, dx`$ for $`n_x`$ sides along x and $`n_y`$ along y: all the same area ΔA. It is the

@@ -291,7 +291,7 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// None, of a record that was made by this crate.
+    /// Those of states that are in no order of a path: [`Self::from_parts`] has refused them.
     pub fn contact(&self) -> Result<ContactSequence, Error> {
         let Replayed { contact, .. } = replay(&self.grid, &self.history, |_, _, _| {})?;
         Ok(contact)

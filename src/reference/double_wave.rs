@@ -6,7 +6,7 @@ use std::f64::consts::{PI, SQRT_2};
 closed_form! {
     /// Contact of the surface $`g(x,y) = D (1 - \cos\frac{2\pi x}{\lambda} \cos\frac{2\pi y}{\lambda})`$.
     ///
-    /// Two crests and two valleys lie in each square `λ²`. Between its two limits this problem has no
+    /// It is a [`BiWave`](crate::surface::BiWave) of two equal wavelengths. Two crests and two valleys lie in each square `λ²`. Between its two limits this problem has no
     /// closed form; the methods name the limit they hold in. `P = p̄/p*`.
     ///
     /// Johnson, Greenwood & Higginson, Int. J. Mech. Sci. 27 (1985) 383; Johnson, *Contact Mechanics*,

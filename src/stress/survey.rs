@@ -148,8 +148,8 @@ impl Subsurface {
         spans
     }
 
-    /// The depths of a survey that lie in each material, from the uppermost layer to the base; none in one that no
-    /// depth was looked at in. What lies on an interface belongs to the layer above it.
+    /// The depths of a survey that lie in each material, from the uppermost layer to the base; empty for a
+    /// material in which no depth was looked at. What lies on an interface belongs to the layer above it.
     #[must_use]
     pub fn by_material(&self, survey: &Survey) -> Vec<Survey> {
         let spans = self.spans().into_iter();

@@ -1,9 +1,10 @@
 //! The inverse of the influence matrix of the contact.
 //!
-//! With n nodes in contact and their influence matrix `C_II`, a path needs three things again and again,
-//! the three verbs of [`LinearUpdater`]: it *watches* nodes that may touch next, lets those that touched
-//! *join*, and *solves* on the contact. The path knows nothing else of an updater, and an updater nothing
-//! of windows and events: any of them serves any path.
+//! With n nodes in contact and their influence matrix `C_II`, a path needs three things again and again of a
+//! [`LinearUpdater`]: it *watches* nodes that may touch next, lets those that touched *join*, and *solves* on the
+//! contact. An updater knows nothing of windows and events. Further methods of the trait have defaults that refuse: where
+//! nodes may leave or yield, a path needs [`truncate`](LinearUpdater::truncate), [`release`](LinearUpdater::release),
+//! [`watch_both`](LinearUpdater::watch_both) and [`solve_for`](LinearUpdater::solve_for) as well.
 //!
 //! | updater | memory for n nodes in contact | |
 //! |---|---|---|
@@ -12,8 +13,8 @@
 //! | [`Handover`] | a budget | the default: a factor while it pays and fits, iterations afterwards |
 //! | [`Dense`] | 16n² bytes | for tests: assembles and factors everything anew |
 //!
-//! Every updater answers exactly. Iterations offer a path more than that, cheap Schur complements that are nearly
-//! exact: with [`ConjugateGradient`] a path uses these and corrects them ([`loading`](crate::loading)).
+//! Every updater answers exactly. Iterations also offer cheap Schur complements that are nearly exact: with
+//! [`ConjugateGradient`] a path uses these and corrects them ([`loading`](crate::loading)).
 
 mod check;
 mod cholesky;

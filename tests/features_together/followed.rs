@@ -141,7 +141,7 @@ pub(super) fn patches(pressed: &mut Pressed<'_>) -> Result<(), Error> {
         })
     };
     let found = Percolation::of(&contact, boundary, Connectivity::Four);
-    let found = [found.contact_x, found.contact_y, found.leak_x, found.leak_y];
+    let found = [found.contact_x, found.contact_y, found.seal_x, found.seal_y];
     let expected =
         [first(Axis::X, true), first(Axis::Y, true), first(Axis::X, false), first(Axis::Y, false)];
     assert_eq!(found, expected, "{name}");

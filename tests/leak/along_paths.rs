@@ -35,7 +35,7 @@ fn leaks_end_where_the_last_channel_closes() {
         let (mut path, history) = path(kernel, 1.0);
         let contact = history.contact_sequence(grid()).unwrap();
         let found = Percolation::of(&contact, kernel.boundary(), Connectivity::Eight);
-        for (axis, closing) in [(Axis::X, found.leak_x), (Axis::Y, found.leak_y)] {
+        for (axis, closing) in [(Axis::X, found.seal_x), (Axis::Y, found.seal_y)] {
             let seal = Seal::new(1e-3, 1e5, axis).unwrap();
             let closing = history.states()[closing.unwrap() - 1];
             let curve = seal.curve(&mut path, &history, 40).unwrap();
@@ -165,8 +165,8 @@ fn the_gap_seals_when_a_flood_of_each_state_says_so() {
                 assert!(expected.is_some(), "seed {seed}: the path is too short");
                 for connectivity in [Connectivity::Four, Connectivity::Eight] {
                     let of = |found: Percolation| match along {
-                        Axis::X => found.leak_x,
-                        Axis::Y => found.leak_y,
+                        Axis::X => found.seal_x,
+                        Axis::Y => found.seal_y,
                     };
                     let boundary = half_space.boundary();
                     let ends = of(Percolation::of(&contact, boundary, connectivity));

@@ -249,8 +249,11 @@ fn cells_wider_than_a_coat_are_warned_of() -> Result<(), Error> {
     let grid = Grid::square(16, 1e-2 / 16.0)?;
     let surface = SelfAffine::zhang2020(1);
     for (thickness, expected) in [(1e-5, true), (1e-3, false)] {
-        let coat = Layer { young: 2e9, poisson: 0.4, thickness };
-        let body = LayeredBody::new(&[coat], Base::HalfSpace { young: 210e9, poisson: 0.3 })?;
+        let coat = Layer { youngs_modulus: 2e9, poissons_ratio: 0.4, thickness };
+        let body = LayeredBody::new(
+            &[coat],
+            Base::HalfSpace { youngs_modulus: 210e9, poissons_ratio: 0.3 },
+        )?;
         let kernel = Layered::free(grid, body)?;
         let mut path = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.1).build()?;
         let history = path.run()?;

@@ -51,11 +51,15 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
     };
     let mean = state.contact.load / state.contact.contact_area;
     let density = found.histogram.density();
-    let density = density.iter().map(|d| d * found.contact_share * mean);
+    let density = density.iter().map(|d| d * found.contact_area_fraction * mean);
     let own = outline(found.histogram.edges(), density, 0.0);
     let name = |who: &str, area: f64| format!("{who}, A/A₀ = {:.2} %", 100.0 * area);
-    let mut series =
-        vec![Series::new(name("this surface", found.contact_share), BLUE, Style::Line, own)];
+    let mut series = vec![Series::new(
+        name("this surface", found.contact_area_fraction),
+        BLUE,
+        Style::Line,
+        own,
+    )];
     if let Some(law) = persson(record)? {
         let nominal = state.contact.mean_pressure();
         let theory = (0..=POINTS).map(|k| {
@@ -94,7 +98,7 @@ fn gaps(moment: &Moment) -> Result<Option<Chart>, Error> {
     let Some(&greatest) = found.histogram.edges().last() else {
         return Ok(None);
     };
-    let open = 1.0 - found.contact_share;
+    let open = 1.0 - found.contact_area_fraction;
     let mean = moment.state.contact.mean_gap / open;
     let density = found.histogram.density();
     let density = density.iter().map(|density| density * mean);

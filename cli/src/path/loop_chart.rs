@@ -41,7 +41,8 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, branches: &Branches) -
         quantity(job.heights().rms_height(), "m", 4)
     );
     sheet::title(area, &title)?;
-    let approach = approach(job, |s: &ContactState| s.approach);
+    let has_stiffness = branches.loading.iter().any(|s| s.contact_stiffness.is_some());
+    let approach = approach(job, has_stiffness, |s: &ContactState| s.approach);
     let pairs = [(approach, LOAD), (LOAD, AREA), (LOAD, MEAN_GAP), (LOAD, INTERFACIAL)];
     let ways = [(&branches.loading[..], "pressed on"), (&branches.unloading, "unloaded")];
     // Load grows with the approach: that corner is free.

@@ -121,8 +121,8 @@ impl PatchAnalysis {
         result!(py, "Percolation", {
             contact_x: state(found.contact_x),
             contact_y: state(found.contact_y),
-            leak_x: state(found.leak_x),
-            leak_y: state(found.leak_y),
+            seal_x: state(found.seal_x),
+            seal_y: state(found.seal_y),
         })
     }
 }
@@ -166,7 +166,7 @@ impl PatchAnalysis {
     /// When contact percolates, and when the gap seals: from one end of the surface to the other, whatever the boundary.
     ///
     /// Where a periodic boundary is open across, patches and channels pass it. Channels pass through sides of cells, whatever the connectivity of
-    /// patches: from ``leak_x`` on `Seal` finds no leak along x.
+    /// patches: from ``seal_x`` on `Seal` finds no leak along x.
     ///
     /// Returns
     /// -------

@@ -114,18 +114,18 @@ fn pressures_count_in_contact_and_gaps_out_of_it() -> Result<(), Error> {
     let pressure = dmatrix![3.0, 0.0; 0.0, 0.0; 1.0, 0.0; 0.0, 0.0];
     let gap = dmatrix![1e-20, 4.0; 0.0, 1.0; 0.0, 1.0; 2.0, 3.0];
     let found = pressure_distribution(&pressure, &contact, Bins::Linear(3))?;
-    assert_eq!(found.contact_share, 3.0 / 8.0);
+    assert_eq!(found.contact_area_fraction, 3.0 / 8.0);
     assert_eq!(found.histogram.edges(), [0.0, 1.0, 2.0, 3.0]);
     assert_eq!(found.histogram.counts(), [1, 1, 1]);
     let found = gap_distribution(&gap, &contact, Bins::Linear(4))?;
-    assert_eq!(found.contact_share, 3.0 / 8.0);
+    assert_eq!(found.contact_area_fraction, 3.0 / 8.0);
     assert_eq!(found.histogram.counts(), [0, 2, 1, 2]);
     // Powers of two: exact.
     assert_eq!(integral(&found.histogram), 1.0);
     // Full contact has no gap.
     let full = contact.map(|_| true);
     let found = gap_distribution(&gap, &full, Bins::Linear(4))?;
-    assert_eq!((found.contact_share, found.histogram.edges()), (1.0, &[][..]));
+    assert_eq!((found.contact_area_fraction, found.histogram.edges()), (1.0, &[][..]));
 
     let bins = Bins::Linear(3);
     assert!(matches!(

@@ -98,16 +98,16 @@ fn a_patch_that_climbs_leads_along_both_directions() -> Result<(), Error> {
     let contact = ContactSequence::with_order(Grid::square(4, 1.0)?, [0, 5, 10, 15])?;
     let around = Percolation::winding(&contact, Boundary::Periodic, Connectivity::Eight);
     assert_eq!((around.contact_x, around.contact_y), (Some(4), Some(4)));
-    assert_eq!((around.leak_x, around.leak_y), (None, None));
+    assert_eq!((around.seal_x, around.seal_y), (None, None));
     let across = Percolation::winding(&contact, Boundary::Periodic, Connectivity::Four);
     assert_eq!((across.contact_x, across.contact_y), (None, None));
     // Between the ends as well, where channels pass the border across.
     let ends = Percolation::of(&contact, Boundary::Periodic, Connectivity::Eight);
     assert_eq!((ends.contact_x, ends.contact_y), (Some(4), Some(4)));
-    assert_eq!((ends.leak_x, ends.leak_y), (None, None));
+    assert_eq!((ends.seal_x, ends.seal_y), (None, None));
     let free = Percolation::of(&contact, Boundary::Free, Connectivity::Eight);
     assert_eq!((free.contact_x, free.contact_y), (Some(4), Some(4)));
-    assert_eq!((free.leak_x, free.leak_y), (Some(4), Some(4)));
+    assert_eq!((free.seal_x, free.seal_y), (Some(4), Some(4)));
     Ok(())
 }
 
@@ -214,7 +214,7 @@ fn random_contact_percolates_at_the_threshold_of_the_square_lattice() -> Result<
             let found = Percolation::of(&contact, boundary, connectivity);
             // Channels pass through sides, as patches without corners do.
             let contact = [found.contact_x, found.contact_y].map(|step| (step, threshold));
-            let leaks = [found.leak_x, found.leak_y].map(|step| (step, 1.0 - four));
+            let leaks = [found.seal_x, found.seal_y].map(|step| (step, 1.0 - four));
             for (step, threshold) in contact.into_iter().chain(leaks) {
                 let share = step.map(|step| step as f64 / grid.nodes() as f64);
                 assert!(share.is_some_and(|share| (share - threshold).abs() < 0.009), "{found:?}");

@@ -62,20 +62,20 @@ proptest! {
         let found = Percolation::of(&contact, case.boundary, case.connectivity);
         prop_assert_eq!(found.contact_x, first(&case, |now| spans(&now, Axis::X)));
         prop_assert_eq!(found.contact_y, first(&case, |now| spans(&now, Axis::Y)));
-        prop_assert_eq!(found.leak_x, first(&case, |now| !spans(&now.channels(), Axis::X)));
-        prop_assert_eq!(found.leak_y, first(&case, |now| !spans(&now.channels(), Axis::Y)));
+        prop_assert_eq!(found.seal_x, first(&case, |now| !spans(&now.channels(), Axis::X)));
+        prop_assert_eq!(found.seal_y, first(&case, |now| !spans(&now.channels(), Axis::Y)));
 
         let ends = found;
         let found = Percolation::winding(&contact, case.boundary, case.connectivity);
         let never = |step: Option<usize>| step.unwrap_or(usize::MAX);
         prop_assert!(never(ends.contact_x) <= never(found.contact_x));
         prop_assert!(never(ends.contact_y) <= never(found.contact_y));
-        prop_assert!(never(ends.leak_x) >= never(found.leak_x));
-        prop_assert!(never(ends.leak_y) >= never(found.leak_y));
+        prop_assert!(never(ends.seal_x) >= never(found.seal_x));
+        prop_assert!(never(ends.seal_y) >= never(found.seal_y));
         prop_assert_eq!(found.contact_x, first(&case, |now| now.percolates(Axis::X)));
         prop_assert_eq!(found.contact_y, first(&case, |now| now.percolates(Axis::Y)));
-        prop_assert_eq!(found.leak_x, first(&case, |now| !now.channels().percolates(Axis::X)));
-        prop_assert_eq!(found.leak_y, first(&case, |now| !now.channels().percolates(Axis::Y)));
+        prop_assert_eq!(found.seal_x, first(&case, |now| !now.channels().percolates(Axis::X)));
+        prop_assert_eq!(found.seal_y, first(&case, |now| !now.channels().percolates(Axis::Y)));
     }
 
     /// A theorem of the plane, which neither side of the comparison uses: a channel from end to end and a patch
@@ -83,8 +83,8 @@ proptest! {
     #[test]
     fn on_a_free_boundary_leakage_ends_as_contact_percolates_across(case in cases()) {
         let found = Percolation::of(&case.contact()?, Boundary::Free, Connectivity::Eight);
-        prop_assert_eq!(found.leak_x, found.contact_y);
-        prop_assert_eq!(found.leak_y, found.contact_x);
+        prop_assert_eq!(found.seal_x, found.contact_y);
+        prop_assert_eq!(found.seal_y, found.contact_x);
     }
 
     /// A patch of the tree is named by its first node: at every state it must be the oldest node of its flood.

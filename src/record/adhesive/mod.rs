@@ -57,11 +57,17 @@ impl AdhesiveRecord {
     ///
     /// # Errors
     ///
-    /// [`Error::StateNotReached`] for other states than these.
+    /// [`Error::LengthMismatch`] for fewer states or more, as for those of one branch of several,
+    /// [`Error::StateNotReached`] for others than these, and [`Error::Inconsistent`] and [`Error::NotFinite`] for numbers
+    /// that no state has.
     pub fn new(path: &AdhesivePath, states: AdhesiveBranch) -> Result<Self, Error> {
         let present = path.state().map_or(0, |state| state.step);
         let steps = states.states().iter().map(|state| state.step);
-        if states.states().len() != present || !steps.eq(1..=present) {
+        if states.states().len() != present {
+            let found = states.states().len();
+            return Err(Error::LengthMismatch { expected: present, found });
+        }
+        if !steps.eq(1..=present) {
             let step = states.states().last().map_or(0, |state| state.step);
             return Err(Error::StateNotReached { step, present });
         }

@@ -63,7 +63,7 @@ placed!(Wave, "a point of a crest", |this, x, y| {
 ///
 /// with x and y measured from a peak, which is in the centre of the grid unless moved by
 /// [`centered_at`](Self::centered_at). There are two peaks a cell of λ_x × λ_y. With equal
-/// wavelengths, the contact of Johnson, Greenwood and Higginson.
+/// wavelengths, the contact of Johnson, Greenwood and Higginson, whose limits are `asperity::reference::DoubleWave`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BiWave {
     amplitude: f64,

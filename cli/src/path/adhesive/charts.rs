@@ -38,7 +38,8 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, followed: &Followed) -
         quantity(job.heights().rms_height(), "m", 4)
     );
     sheet::title(area, &title)?;
-    let approach = approach(job, |s: &AdhesiveState| s.contact.approach);
+    let has_stiffness = followed.states.iter().any(|s| s.contact.contact_stiffness.is_some());
+    let approach = approach(job, has_stiffness, |s: &AdhesiveState| s.contact.approach);
     let pairs = [(approach, LOAD), (LOAD, AREA), (LOAD, MEAN_GAP), (approach, LOST)];
     let ways = [(loading.states(), "pressed on"), (unloading.states(), "pulled off")];
     // Contact grows with the load: that corner is free.

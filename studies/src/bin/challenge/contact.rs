@@ -88,11 +88,11 @@ fn read(
     let stiffness = state.interfacial_stiffness.unwrap_or(f64::NAN);
     let map = &solution.fields.contact_map;
     let gaps = gap_distribution(&solution.fields.gap, map, Bins::PerDecade(GAP_BINS))?;
-    let open = 1.0 - gaps.contact_share;
+    let open = 1.0 - gaps.contact_area_fraction;
     let middle = |edges: &[f64]| (edges[0] * edges[1]).sqrt();
     let gaps = gaps.histogram.edges().windows(2).zip(gaps.histogram.density());
     let found = pressure_distribution(&solution.fields.pressure, map, Bins::Linear(PRESSURE_BINS))?;
-    let share = found.contact_share;
+    let share = found.contact_area_fraction;
     let pressures = found.histogram.edges().windows(2).zip(found.histogram.density());
     Ok(Contact {
         nodes: grid.nx(),
