@@ -140,8 +140,8 @@ impl Material {
         Self { name, youngs_modulus, poissons_ratio, hardness }
     }
 
-    /// The material of this name, in any case, with spaces for hyphens; aluminum is aluminium, and DLC diamond-like
-    /// carbon.
+    /// The material of this name, in any case, with spaces for hyphens; aluminum is aluminium, DLC diamond-like
+    /// carbon, and CrN chromium nitride.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         const ALL: &[Material] = &Material::ALL;
@@ -149,6 +149,7 @@ impl Material {
         let name = match &*name {
             "aluminum" => "aluminium",
             "dlc" => "diamond-like-carbon",
+            "crn" => "chromium-nitride",
             name => name,
         };
         ALL.iter().find(|material| material.name == name)
@@ -176,6 +177,7 @@ mod tests {
             (" Stainless Steel", "stainless-steel"),
             ("Aluminum", "aluminium"),
             ("DLC", "diamond-like-carbon"),
+            ("CrN", "chromium-nitride"),
             ("Titanium nitride", "titanium-nitride"),
         ] {
             assert_eq!(Material::named(name).map(|material| material.name), Some(known));

@@ -39,6 +39,38 @@ impl Table {
     }
 }
 
+/// What a loop costs is told of the last one, of a record that has two; and the pull of unloading begins where it does.
+#[test]
+fn the_last_loop_counts() -> Done {
+    let folder = Scratch::new("adhesion_loops")?;
+    let record = |name: &str| AdhesiveRecord::read_npz(folder.join(name));
+    let line = format!("{SOFT} {STICKS} --mean-pressure 100 --unload --record first.npz");
+    let first = answer(&folder.0, &line)?;
+    run(&folder.0, "path --resume first.npz --mean-pressure 50 --record on.npz --out on")?;
+    let turned = record("first.npz")?.states().states().len();
+    let line = "path --resume on.npz --mean-pressure 50 --unload --record both.npz --out both";
+    let second = answer(&folder.0, line)?;
+    let both = record("both.npz")?;
+    let states = both.states().states();
+    let (before, loop_of) = (states[turned - 1], &states[turned..]);
+    let lost = states[states.len() - 1].dissipated - before.dissipated;
+    assert!((number(&second, "loop_energy") - lost).abs() <= 1e-15 * lost);
+    assert!(lost > 0.0 && lost < number(&first, "loop_energy"), "{lost:e}");
+    let jumps = loop_of.iter().filter(|state| state.event == AdhesiveEvent::JumpEnd).count();
+    assert_eq!(second["jumps"], jumps);
+    // Pressed on no further than to where nothing but pull is left.
+    let line =
+        format!("{SOFT} {STICKS} --max-approach=-0.5um --unload --record short.npz --out short");
+    let short = answer(&folder.0, &line)?;
+    let short_record = record("short.npz")?;
+    let pressed = short_record.states().states().iter();
+    let pressed = pressed.filter(|state| state.direction == Direction::Loading).next_back();
+    let pressed = pressed.ok_or("no loading")?;
+    assert!(pressed.contact.load < 0.0);
+    assert!(number(&short, "pull_off") >= -pressed.contact.load);
+    Ok(())
+}
+
 /// A row of the file holds the numbers of the record, of which the library's tests say that they are right; the answer
 /// for programs is read off them.
 #[test]

@@ -97,6 +97,19 @@ fn depths_may_be_given() -> Done {
     Ok(())
 }
 
+/// Sections and the volume of a layer on a rigid base end at the base: in steps of its thickness, 29 µm, the last depth
+/// would be beyond it by rounding.
+#[test]
+fn layers_end_at_a_rigid_base() -> Done {
+    let folder = Scratch::new("stress-rigid-base")?;
+    let line =
+        "path --nodes 16 --side 160um --layer 3e6,0.4,29um --base rigid --max-area-fraction 0.3";
+    run(&folder.0, &format!("{line} --record path.npz --out path -q"))?;
+    run(&folder.0, "stress path.npz --volume 40 --out seen")?;
+    assert!(folder.join("seen/stress.vti").exists() && folder.join("seen/section_x.png").exists());
+    Ok(())
+}
+
 /// The measures of a tensor (xx, yy, zz, yz, xz, xy) in the order of the file; principal stresses by the angle of Lode.
 fn measures([xx, yy, zz, yz, xz, xy]: [f64; 6]) -> [f64; 4] {
     let mean = (xx + yy + zz) / 3.0;

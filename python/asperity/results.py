@@ -160,7 +160,7 @@ class Distribution(_WithArrays):
         Probability density in each bin.
     outside : int
         Number of values in no bin.
-    contact_area_fraction : float
+    area_fraction : float
         The share of nodes in contact.
     """
 
@@ -168,7 +168,7 @@ class Distribution(_WithArrays):
     counts: NDArray[np.int64]
     density: NDArray[np.float64]
     outside: int
-    contact_area_fraction: float
+    area_fraction: float
 
 
 @dataclass(frozen=True, eq=False)

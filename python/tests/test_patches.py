@@ -168,7 +168,7 @@ def test_distributions(rough: asp.Surface, body: asp.HalfSpace) -> None:
     pressure = asp.pressure_distribution(one.pressure, one.contact_map, bins=20)
     assert pressure.counts.sum() == one.contact_nodes and len(pressure.edges) == 21
     assert (pressure.density * np.diff(pressure.edges)).sum() == pytest.approx(1.0, rel=1e-12)
-    assert pressure.contact_area_fraction == one.area_fraction
+    assert pressure.area_fraction == one.area_fraction
     gap = asp.gap_distribution(one.gap, one.contact_map, per_decade=4)
     assert gap.counts.sum() + gap.outside == (~one.contact_map).sum()
     with pytest.raises(asp.AsperityError, match="not both"):

@@ -81,14 +81,14 @@ impl LoadingPath {
     ///
     /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node that
     /// *left* the contact or *yielded* are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
-    /// contact. Without a factor a state costs a solution; one before the last node that yielded, in as much memory
-    /// again as iterations take.
+    /// contact. Without a factor a state costs a solution; one before the last node that left or yielded takes as much
+    /// memory again as iterations, or as a factor of its contact if nothing yields and that is less.
     ///
     /// # Errors
     ///
     /// [`Error::StateNotReached`] if the state lies beyond the present one; [`Error::NotOnPath`] if it is not
-    /// a state of this path; those of the updater; before the last node that left or
-    /// yielded, [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
+    /// a state of this path; those of the updater, of iterations [`Error::NoConvergence`]; before the last node that
+    /// left or yielded, [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
     pub fn fields_at(&mut self, state: &LoadingState) -> Result<ContactFields, Error> {
         let pressure = self.solved_at(state)?;
         self.fields_under(pressure, Some(*state))

@@ -229,7 +229,7 @@ impl Limits {
         end.map(|end| (end, None))
     }
 
-    /// The same behind the last event that there is, from where on everything is linear.
+    /// The same behind the last event that there is, from where on everything is linear, and no gap closes.
     pub(super) fn behind(&self, last: LoadingState) -> Option<(LoadingEnd, Option<LoadingState>)> {
         let (end, state) = self.first_exceeded(&last.contact, None)?;
         Some((end, last.at_limit(state)))
@@ -255,19 +255,22 @@ impl Limits {
                 next.map_or(self.approach < f64::INFINITY, |next| next.approach > self.approach),
                 // In full contact mean planes come no closer until a node yields: only errors of states pass the limit.
                 last.at_approach(self.approach)
-                    .or(Some(ContactState { approach: self.approach, ..*last })),
+                    .or_else(|| next.map(|_| ContactState { approach: self.approach, ..*last })),
             ),
             (
                 LoadingEnd::MeanGap,
                 // In full contact there is none left, and nodes may go on to yield.
-                next.map_or(self.least_mean_gap >= 0.0, |next| next.mean_gap < self.least_mean_gap)
+                next.is_some_and(|next| next.mean_gap < self.least_mean_gap)
                     || (is_full && last.mean_gap == self.least_mean_gap),
                 last.at_mean_gap(self.least_mean_gap),
             ),
         ];
         let exceeded = exceeded.into_iter().filter(|(_, exceeded, _)| *exceeded);
+        let is_ahead = |state: &ContactState| {
+            next.is_some() || (state.load >= last.load && state.approach >= last.approach)
+        };
         exceeded
-            .filter_map(|(end, _, state)| Some((end, state?)))
+            .filter_map(|(end, _, state)| Some((end, state.filter(is_ahead)?)))
             .min_by(|(_, a), (_, b)| a.order(b))
     }
 }

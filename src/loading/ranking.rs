@@ -24,13 +24,19 @@ pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, E
         check_growth(run)?;
     }
     let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
+    let sound = -TOLERANCE * (run.problem.greatest_gap() + approach);
+    let mut is_sound = true;
     fill(run, ranking, Some(run.inherited_slack()), |line| {
+        is_sound &= line.gap >= sound;
         if may_leave && line.closing <= LEAST_RATE {
             return f64::INFINITY;
         }
         first = first.min(line.touches());
         ties_from(approach, *line)
     })?;
+    if is_sound {
+        run.inherited = 0.0;
+    }
     run.timings.choice += start.elapsed();
     Ok(first)
 }

@@ -77,7 +77,9 @@ impl KernelRecord {
             (Some(gauge), Some(&asked), Some(&own))
                 if (asked - own).abs() > SAME_KERNEL * asked.abs().max(own.abs()) =>
             {
-                table.in_gauge(gauge + (asked - own))
+                let moved = table.in_gauge(gauge + (asked - own));
+                // In a smaller one gaps need not be convex.
+                if asked < own { moved.at_most_monotone() } else { moved }
             }
             _ => table,
         }

@@ -134,6 +134,26 @@ fn limits_behind_the_last_event_are_reached() {
     }
 }
 
+/// Behind the last event gaps may open: a mean gap that the path has not come to is not reached, and hides no load.
+#[test]
+fn mean_gaps_behind_the_last_event_are_not_reached() {
+    let grid = Grid::new(3, 1, 1.0, 1.0).unwrap();
+    let coefficient = |di: isize, _| [1.0, 0.6, 0.1][di.unsigned_abs()];
+    let kernel =
+        KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, coefficient).unwrap();
+    let gaps = [0.0, 5.0, 0.1];
+    let heights = HeightMap::new(DMatrix::from_fn(3, 1, |ix, _| -gaps[ix])).unwrap();
+    let builder = || LoadingSolver::builder(&heights, &kernel).min_mean_gap(1.0);
+    let mut path = builder().build().unwrap();
+    let last = *path.run().unwrap().states().last().unwrap();
+    assert_eq!((path.end(), last.step), (Some(LoadingEnd::NoMoreEvents), 2));
+    assert!(last.contact.interfacial_stiffness.unwrap() < 0.0 && last.contact.mean_gap > 1.0);
+    let mut path = builder().max_load(1.0).build().unwrap();
+    let loaded = *path.run().unwrap().states().last().unwrap();
+    assert_eq!((path.end(), loaded.contact.load), (Some(LoadingEnd::Load), 1.0));
+    assert!(loaded.contact.mean_gap > last.contact.mean_gap);
+}
+
 /// Nodes that tie are solved for one by one where a kernel promises nothing: what rounds there is no path that falls.
 #[test]
 fn ties_of_unknown_growth_are_a_bed() {

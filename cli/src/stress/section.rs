@@ -59,7 +59,13 @@ fn reach(moment: &Moment, body: &Body) -> f64 {
 
 /// The distance of so many depths that reach down to one.
 fn step(deep: f64, depths: usize) -> f64 {
-    deep / depths.saturating_sub(1).max(1) as f64
+    let steps = depths.saturating_sub(1).max(1) as f64;
+    let mut step = deep / steps;
+    // Not below it by rounding, where a rigid base may be.
+    while step * steps > deep {
+        step = step.next_down();
+    }
+    step
 }
 
 /// Writes the stresses at so many depths for `ParaView`.

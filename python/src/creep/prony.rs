@@ -120,15 +120,15 @@ impl Prony {
     ///
     /// Parameters
     /// ----------
-    /// poisson : float
+    /// poissons_ratio : float
     ///     Poisson's ratio, which does not depend on time.
     ///
     /// Returns
     /// -------
     /// Prony
-    fn plane_strain(slf: &Bound<'_, Self>, poisson: f64) -> Fallible<Self> {
-        let made = slf.get().prony.plane_strain(poisson)?;
-        Self::new(slf.py(), made, "plane_strain", (slf, poisson))
+    fn plane_strain(slf: &Bound<'_, Self>, poissons_ratio: f64) -> Fallible<Self> {
+        let made = slf.get().prony.plane_strain(poissons_ratio)?;
+        Self::new(slf.py(), made, "plane_strain", (slf, poissons_ratio))
     }
 
     /// This body on top of another one: creep functions add up.

@@ -37,7 +37,7 @@ fn distribution<'py>(
         counts: column(py, histogram.counts().iter().map(|count| *count as i64).collect()),
         density: column(py, histogram.density()),
         outside: histogram.outside(),
-        contact_area_fraction: found.contact_area_fraction,
+        area_fraction: found.contact_area_fraction,
     })
 }
 
@@ -56,7 +56,7 @@ fn distribution<'py>(
 /// Returns
 /// -------
 /// results.Distribution
-///     Its density has the integral 1; times ``contact_area_fraction`` it is that over the nominal area.
+///     Its density has the integral 1; times ``area_fraction`` it is that over the nominal area.
 #[pyfunction(name = "pressure_distribution")]
 #[pyo3(signature = (pressure, contact_map, *, bins=None, per_decade=None))]
 fn of_pressure<'py>(

@@ -263,6 +263,14 @@ impl KernelTable {
         table
     }
 
+    /// The same kernel without a promise that gaps are convex.
+    pub(crate) fn at_most_monotone(mut self) -> Self {
+        if self.growth == ContactGrowth::Convex {
+            self.growth = ContactGrowth::Monotone;
+        }
+        self
+    }
+
     /// A gauge to compute in \[m/Pa\], of no influence on results: see [`of_coefficients`]. `None` if
     /// the kernel has none.
     pub(crate) fn computing_gauge(&self) -> Option<f64> {

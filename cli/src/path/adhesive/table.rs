@@ -26,7 +26,8 @@ pub(super) fn print(job: &Job, followed: &Followed, warnings: &[String], seconds
     columns(job, &rows);
     say!("load: below 0 where the surfaces are pulled apart; pressure: load over nominal area");
     say!("area: cells whose gap is 0; pulled: cells that are pulled across a gap");
-    match is_of_mean_planes(job.periodic()) {
+    let has_stiffness = rows.iter().any(|state| state.contact.contact_stiffness.is_some());
+    match !has_stiffness && is_of_mean_planes(job.periodic()) {
         false => say!("approach: from where surfaces that do not pull would touch"),
         true => {
             say!("approach: of the mean planes, from where surfaces that do not pull would touch")
