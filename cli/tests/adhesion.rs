@@ -63,8 +63,8 @@ fn the_last_loop_counts() -> Done {
         format!("{SOFT} {STICKS} --max-approach=-0.5um --unload --record short.npz --out short");
     let short = answer(&folder.0, &line)?;
     let short_record = record("short.npz")?;
-    let pressed = short_record.states().states().iter();
-    let pressed = pressed.filter(|state| state.direction == Direction::Loading).next_back();
+    let mut states = short_record.states().states().iter();
+    let pressed = states.rfind(|state| state.direction == Direction::Loading);
     let pressed = pressed.ok_or("no loading")?;
     assert!(pressed.contact.load < 0.0);
     assert!(number(&short, "pull_off") >= -pressed.contact.load);
