@@ -241,7 +241,8 @@ fn what_is_not_known_is_refused() {
     // Pressure and overclosure ask for no stiffness.
     assert!(table().build().unwrap().rows().len() > 10);
     // A state of a longer path, and of more nodes.
-    let longer = builder().max_area_fraction(0.5).hardness(2e9).build().unwrap();
+    let longer = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.5);
+    let longer = longer.hardness(2e9).build().unwrap();
     let beyond = longer.last().unwrap().unwrap();
     assert!(matches!(
         path.add_unloading_stiffness(&mut [beyond]),

@@ -183,9 +183,9 @@ fn ties_of_unknown_growth_are_a_bed() {
     assert!(Bed::new(&states.into_iter().collect()).is_err());
 }
 
-/// Fields of earlier states, where nodes have left since, take no factor on a path without one.
+/// Fields of earlier states, where nodes have left since, are those of a factor on a path without one, too.
 #[test]
-fn fields_before_a_release_take_no_factor() {
+fn fields_before_a_release_are_those_of_a_factor() {
     use asperity::kernel::{Base, Layer, Layered, LayeredBody};
     let grid = Grid::square(48, 48e-6).unwrap();
     let coat = Layer { youngs_modulus: 500e9, poissons_ratio: 0.2, thickness: 4e-6 };
