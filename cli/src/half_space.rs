@@ -40,9 +40,10 @@ impl Periodic {
     }
 }
 
-/// Whether the approach is that of the mean planes: where surface and half-space repeat in both directions.
-pub fn is_of_mean_planes(periodic: Option<Periodic>) -> bool {
-    boundary(periodic) == Boundary::Periodic
+/// Whether the approach is that of the mean planes: where surface and half-space repeat in both directions, and states
+/// have no contact stiffness. Layers on a rigid base have one, and an approach of their own.
+pub fn is_of_mean_planes(periodic: Option<Periodic>, has_stiffness: bool) -> bool {
+    !has_stiffness && boundary(periodic) == Boundary::Periodic
 }
 
 /// What surrounds the nominal area.

@@ -81,7 +81,7 @@ pub(crate) fn print_of(seeds: &[u64], rows: &[Row], grid: &Grid, periodic: Optio
         "area: cells in contact; corrected: without the excess of whole cells along the edges of patches (somewhat too small)"
     );
     // Layers on a rigid base have an approach of their own, and so a K, where they repeat too.
-    match (has_k, is_of_mean_planes(periodic)) {
+    match (has_k, is_of_mean_planes(periodic, has_k)) {
         (true, _) => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
         (false, true) => say!("approach: of the mean planes, from first touch"),
         (false, false) => say!("approach: from first touch"),

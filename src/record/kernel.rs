@@ -71,7 +71,7 @@ impl KernelRecord {
 
     /// A kernel in the gauge of this one, if that was [another](crate::PeriodicBoussinesq::with_gauge) than the kernel
     /// has by itself; it must be the same otherwise.
-    pub(super) fn in_gauge(&self, table: KernelTable) -> KernelTable {
+    fn in_gauge(&self, table: KernelTable) -> KernelTable {
         let found = Self::of(&table).coefficients;
         match (table.gauge(), self.coefficients.first(), found.first()) {
             (Some(gauge), Some(&asked), Some(&own))
@@ -85,7 +85,7 @@ impl KernelRecord {
         }
     }
 
-    /// The kernel, made again, if it is still the same.
+    /// The kernel, made again in its gauge, if it is still the same.
     pub(super) fn make(&self, grid: Grid) -> Result<KernelTable, Error> {
         let table = match &self.origin {
             KernelOrigin::Boussinesq { e_star } => {
@@ -112,6 +112,6 @@ impl KernelRecord {
         // In the gauge that a problem uses.
         let table = table.regular();
         self.check(&table)?;
-        Ok(table)
+        Ok(self.in_gauge(table))
     }
 }

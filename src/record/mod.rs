@@ -260,7 +260,7 @@ impl LoadingRecord {
     /// [`Error::ForeignKernel`] if it is not one of this crate, and [`Error::WrongKernel`] if this version makes
     /// another one of it.
     pub fn make_kernel(&self) -> Result<KernelTable, Error> {
-        Ok(self.kernel.in_gauge(self.kernel.make(self.grid)?))
+        self.kernel.make(self.grid)
     }
 
     /// The settings of the path.

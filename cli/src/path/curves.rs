@@ -68,18 +68,18 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
     };
 
     // A half-space that repeats both ways has no approach but that of the mean planes, and no stiffness but the
-    // interfacial one. Layers on a rigid base have both.
+    // interfacial one.
     let has_stiffness = loaded.iter().any(|s| s.contact.contact_stiffness.is_some());
     let both: [Curve; 2] = [
         (contact_stiffness, BLUE, "contact, K = dW/dδ"),
         (interfacial_stiffness, ORANGE, "interfacial, −dW/d(mean gap)"),
     ];
     let interfacial: [Curve; 1] = [(both[1].0, BLUE, "")];
-    let (approach, stiffness, stiffnesses) =
-        match !has_stiffness && is_of_mean_planes(job.periodic()) {
-            false => ("approach δ", "stiffness", &both[..]),
-            true => ("approach of the mean planes", "interfacial stiffness", &interfacial[..]),
-        };
+    let (approach, stiffness, stiffnesses) = match is_of_mean_planes(job.periodic(), has_stiffness)
+    {
+        false => ("approach δ", "stiffness", &both[..]),
+        true => ("approach of the mean planes", "interfacial stiffness", &interfacial[..]),
+    };
     let contact_and_yielded: [Curve; 2] =
         [(|s| s.contact.contact_area, BLUE, "contact"), (yielded_area, ORANGE, "yielded")];
     let contact: [Curve; 1] = [(|s| s.contact.contact_area, BLUE, "")];

@@ -15,10 +15,9 @@ pub(super) type Quantity<S> = (&'static str, &'static str, fn(&S) -> f64);
 /// The states of a way, and its name.
 pub(super) type Way<'a, S> = (&'a [S], &'static str);
 
-/// The approach, named as its body has it: layers on a rigid base have one of their own, and a contact stiffness,
-/// where they repeat too.
+/// The approach, named as its body has it.
 pub(super) fn approach<S>(job: &Job, has_stiffness: bool, of: fn(&S) -> f64) -> Quantity<S> {
-    let name = match !has_stiffness && is_of_mean_planes(job.periodic()) {
+    let name = match is_of_mean_planes(job.periodic(), has_stiffness) {
         false => "approach δ",
         true => "approach of the mean planes",
     };

@@ -148,7 +148,7 @@ impl AdhesiveRecord {
     ///
     /// Those of [`LoadingRecord::make_kernel`](super::LoadingRecord::make_kernel).
     pub fn make_kernel(&self) -> Result<KernelTable, Error> {
-        Ok(self.kernel.in_gauge(self.kernel.make(self.grid)?))
+        self.kernel.make(self.grid)
     }
 
     /// The same on the kernel given, which must be the one of the record, for kernels that are not of this crate; and

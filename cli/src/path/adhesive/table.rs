@@ -27,7 +27,7 @@ pub(super) fn print(job: &Job, followed: &Followed, warnings: &[String], seconds
     say!("load: below 0 where the surfaces are pulled apart; pressure: load over nominal area");
     say!("area: cells whose gap is 0; pulled: cells that are pulled across a gap");
     let has_stiffness = rows.iter().any(|state| state.contact.contact_stiffness.is_some());
-    match !has_stiffness && is_of_mean_planes(job.periodic()) {
+    match is_of_mean_planes(job.periodic(), has_stiffness) {
         false => say!("approach: from where surfaces that do not pull would touch"),
         true => {
             say!("approach: of the mean planes, from where surfaces that do not pull would touch")
