@@ -120,7 +120,7 @@ impl Judge {
     }
 
     /// The interval of loads with as many nodes in contact as fit into a fraction is nothing, or as narrow as solutions
-    /// are exact.
+    /// are exact, in load or in gap.
     fn is_unreachable(&self, fraction: f64) -> bool {
         let Ok(nodes) = self.grid.nodes_in(fraction) else {
             return true;
@@ -131,9 +131,16 @@ impl Judge {
         else {
             return true;
         };
-        let end = next.map_or(f64::INFINITY, |next| next.contact.load);
+        let Some(next) = next else {
+            return false;
+        };
         let slack = (SURE * self.settings.tolerance).max(self.circumstances.error);
-        end - state.contact.load <= slack * self.grid.nodes() as f64 * end
+        let (start, end) = (&state.contact, &next.contact);
+        // No node closes by more than all nodes together, so within what gaps may be off by nothing tells these numbers
+        // apart.
+        let closing = self.dense.own_length(start.mean_gap - end.mean_gap);
+        let nodes = self.grid.nodes() as f64;
+        end.load - start.load <= slack * nodes * end.load || closing * nodes <= self.gap_error(end)
     }
 
     /// Looks at a solution.
