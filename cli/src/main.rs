@@ -86,7 +86,8 @@ struct Arguments {
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0: done; 1: an error, and what was computed before it is written; 2: arguments that cannot be read; \
-    130: interrupted by Ctrl-C or SIGTERM, and the path so far is saved.";
+    130: interrupted by Ctrl-C or SIGTERM, and the path so far is saved; of --seeds the finished paths stay, and the \
+    one in work is dropped.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -73,7 +73,7 @@ impl Failure {
 /// Words of the library in those of the command line.
 #[must_use]
 pub fn of_program(text: &str) -> String {
-    const WORDS: [(&str, &str); 8] = [
+    const WORDS: [(&str, &str); 9] = [
         ("`surface::fill_missing`", "`--fill`"),
         ("`ReadOptions::height_unit`", "`--height-unit`"),
         ("`ReadOptions::lateral_unit`", "`--lateral-unit`"),
@@ -82,6 +82,7 @@ pub fn of_program(text: &str) -> String {
         ("`ReadOptions::layout`", "`--layout`"),
         ("`ReadOptions::rows_are_y`", "`--rows-are-y`"),
         ("`Topography::level`", "`--level plane`"),
+        ("`AdhesiveRecord` reads it", "`asperity path --resume` goes on with it"),
     ];
     WORDS.iter().fold(text.to_string(), |text, (rust, option)| text.replace(rust, option))
 }
@@ -237,7 +238,7 @@ impl Outcome {
 
 #[cfg(test)]
 mod tests {
-    use asperity::{FileError, SurfaceError};
+    use asperity::{AdhesionError, FileError, SurfaceError};
 
     use super::*;
 
@@ -254,6 +255,7 @@ mod tests {
             FileError::WhichChannel { path: PathBuf::new(), wanted: None, channels: Vec::new() };
         let missing = SurfaceError::HeightNotFinite { ix: 0, iy: 0, value: f64::NAN, count: 1 };
         let lateral = "`ReadOptions::lateral_unit` or `ReadOptions::side`";
+        let sticks = AdhesionError::Record { path: PathBuf::new() };
         let tilted = asperity::surface::Warning::Tilted { plane: 1e-6, left: 1e-9 };
         for (text, option) in [
             (missing.to_string(), "`--fill`"),
@@ -262,9 +264,11 @@ mod tests {
             (no_unit("lengths", lateral).to_string(), "`--lateral-unit` or `--side`"),
             (which.to_string(), "`--channel`"),
             (tilted.to_string(), "`--level plane`"),
+            (sticks.to_string(), "`asperity path --resume`"),
         ] {
             let told = of_program(&text);
-            assert!(told.contains(option) && !told.contains("::"), "{told}");
+            assert!(told.contains(option), "{told}");
+            assert!(!told.contains("::") && !told.contains("AdhesiveRecord"), "{told}");
         }
     }
 

@@ -3,8 +3,9 @@
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 /// What the model is.
-const MODEL: &str = "The model is linear elastic, without friction and without adhesion: two bodies, flat but for \
-                     their roughness, press on each other normally";
+const MODEL: &str = "The model is linear elastic: two bodies, flat but for their roughness, press on each other \
+                     normally, without friction. Nothing yields without --hardness, and nothing sticks without \
+                     --work-of-adhesion";
 
 /// Parts of the names that such options have, and what the program does of it.
 const LEFT_OUT: [(&[&str], &str); 8] = [
@@ -22,11 +23,15 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
     ),
     (
         &["viscoel", "creep", "relax", "-rate", "frequency"],
-        "time plays no part: only the modulus at the rate of loading can be given, by --e-star or --material",
+        "time plays no part here, and the modulus is that at the rate of loading; `asperity creep` lets the path of a \
+         record creep",
     ),
     (&["temperature", "thermal", "heat"], "temperature plays no part"),
     (&["wear"], "surfaces do not wear"),
-    (&["lubric", "viscosity", "fluid", "leak"], "there is nothing between the surfaces"),
+    (
+        &["lubric", "viscosity", "fluid", "leak"],
+        "there is nothing between the surfaces here; `asperity leak` presses a fluid through the gap of a record",
+    ),
     (
         &["unload"],
         "unloading needs no option where nothing yields: elastic contact without friction goes back through the same states; \
@@ -76,11 +81,15 @@ mod tests {
             ("--hardness", "yields"),
             ("--work-of-adhesion", "pulls"),
             ("--viscoelastic", "time"),
+            ("--creep-time", "`asperity creep`"),
+            ("--viscosity", "`asperity leak`"),
+            ("--leak", "`asperity leak`"),
             ("--temperature", "temperature"),
         ] {
             let said = said(option).unwrap_or_default();
             assert!(said.contains(word) && said.contains(option), "{said}");
             assert!(said.contains("linear elastic"), "{said}");
+            assert!(!said.contains("without adhesion"), "{said}");
         }
         // Another command, another mistake, and none.
         #[derive(Debug, Parser)]

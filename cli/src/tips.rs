@@ -16,11 +16,20 @@ pub(crate) fn of(error: &Error) -> Option<String> {
     match error.kind() {
         ErrorKind::InvalidSubcommand => {
             let file = word(ContextKind::InvalidSubcommand)?;
+            let is_record = file.ends_with(".npz");
             Path::new(file).is_file().then(|| {
-                format!(
-                    "error: '{file}' is a file, and no command\n\n  tip: `asperity info {file}` describes it, and \
-                     `asperity path --surface {file} --material steel --mean-pressure 5MPa` presses it\n"
-                )
+                let tip = if is_record {
+                    format!(
+                        "`asperity report {file}` shows it, `asperity patches {file}` describes it, and \
+                         `asperity path --resume {file}` goes on with it"
+                    )
+                } else {
+                    format!(
+                        "`asperity info {file}` describes it, and `asperity path --surface {file} --material steel \
+                         --mean-pressure 5MPa` presses it"
+                    )
+                };
+                format!("error: '{file}' is a file, and no command\n\n  tip: {tip}\n")
             })
         }
         ErrorKind::UnknownArgument => {

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use asperity::io::read_npy;
 use asperity::record::LoadingRecord;
-use common::{Scratch, answer, data, is_refused, number, output, said};
+use common::{Scratch, answer, data, is_refused, number, output, said, with_surface};
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
@@ -22,8 +22,7 @@ fn run(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
 
 /// A path of 48 × 48 nodes with E* = 1 Pa.
 fn with_record(name: &str) -> Result<Scratch, Box<dyn Error>> {
-    let folder = Scratch::new(name)?;
-    fs::copy(data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    let folder = with_surface(name)?;
     let path = "path --surface rough.npy --side 1e-2 --e-star 1 --max-area-fraction 0.32 --record path.npz --out path";
     run(&folder.0, path)?;
     Ok(folder)
@@ -260,6 +259,11 @@ fn facts_of_flow_and_relaxation() -> Done {
     }
     assert_eq!(relaxes["method"], "closed form");
     assert!(relaxes["cycles"].is_null() && relaxes["recedes"].is_null(), "{relaxes}");
+
+    // Elastic bodies have no cycles to draw.
+    run(&folder.0, &format!("creep path.npz --prony 1,0 --load {load:e} --out elastic"))?;
+    assert!(folder.join("elastic/creep.csv").exists());
+    assert!(!folder.join("elastic/creep_cycles.csv").exists());
     Ok(())
 }
 

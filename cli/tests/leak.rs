@@ -6,7 +6,7 @@ use std::error::Error;
 use std::ffi::OsStr;
 use std::fs;
 
-use common::{Scratch, asperity, data, is_refused, numbers, only_line};
+use common::{Scratch, asperity, is_refused, numbers, only_line, with_surface};
 use serde_json::Value;
 
 fn run(folder: &Scratch, arguments: &[&str]) -> std::io::Result<std::process::Output> {
@@ -148,8 +148,7 @@ fn spoken(text: &str) -> Result<f64, Box<dyn Error>> {
 /// A surface of 1 cm by 2 cm is 2 cm wide for what flows along x.
 #[test]
 fn rates_in_words_are_those_of_the_file() -> Result<(), Box<dyn Error>> {
-    let folder = Scratch::new("leak-words")?;
-    fs::copy(data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    let folder = with_surface("leak-words")?;
     let printed = |line: &str| -> Result<String, Box<dyn Error>> {
         let done = run(&folder, &line.split_whitespace().collect::<Vec<_>>())?;
         assert!(done.status.success(), "{line}");

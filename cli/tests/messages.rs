@@ -6,7 +6,7 @@ use std::error::Error;
 use std::fs;
 
 use asperity::io::write_npy;
-use common::{Scratch, answer, is_refused, output, said};
+use common::{Scratch, answer, is_refused, output, said, with_surface};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -90,6 +90,7 @@ fn what_the_model_leaves_out_is_said_of_paths() -> Result<(), Box<dyn Error>> {
         ("path --nodes 16 --frictions 0.3", "frictionless", true),
         ("load --viscoelastic 0.3", "time plays no part", true),
         ("path --strain-rate 0.3", "time plays no part", true),
+        ("path --viscosity 3", "`asperity leak`", true),
         ("--temperature 300", "temperature plays no part", true),
         ("slip r.npz --frictions 0.3", "'--friction'", false),
         ("leak r.npz --viscositys 1e-3", "'--viscosity'", false),
@@ -101,6 +102,18 @@ fn what_the_model_leaves_out_is_said_of_paths() -> Result<(), Box<dyn Error>> {
         assert!(told.contains(expected), "{line}: {told}");
         assert_eq!(told.contains("The model is linear elastic"), is_left_out, "{line}: {told}");
     }
+    Ok(())
+}
+
+#[test]
+fn a_record_without_a_command_gets_a_tip() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("record_tip")?;
+    fs::write(folder.join("r.npz"), "")?;
+    let told = said(&output(&folder.0, "r.npz")?);
+    for command in ["report", "patches", "path --resume"] {
+        assert!(told.contains(&format!("`asperity {command} r.npz`")), "{told}");
+    }
+    assert!(!told.contains("info"), "{told}");
     Ok(())
 }
 
@@ -125,8 +138,7 @@ fn negative_values_are_values() -> Result<(), Box<dyn Error>> {
 /// Counts are integers wherever a program reads them.
 #[test]
 fn counts_are_integers() -> Result<(), Box<dyn Error>> {
-    let folder = Scratch::new("integers")?;
-    fs::copy(common::data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    let folder = with_surface("integers")?;
     let path = "--nodes 32 --periodic love --max-area-fraction 0.3";
     for line in [
         &format!("path {path} --record r.npz"),

@@ -71,6 +71,22 @@ fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Charts are of the format that is asked for; Persson's theory is elastic, and drawn beside no contact that yields.
+#[test]
+fn charts_of_contacts_that_yield_have_no_elastic_theory() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("patches_yield")?;
+    for (hardness, is_elastic) in [("", true), ("--hardness 1e9", false)] {
+        let path = "path --nodes 16 --periodic love --mean-pressure 1e8 --record r.npz -q";
+        run(&folder.0, &format!("{path} {hardness}"))?;
+        run(&folder.0, "patches r.npz --charts svg --out seen")?;
+        let chart = |name: &str| fs::read_to_string(folder.join("seen").join(name));
+        assert_eq!(chart("distributions.svg")?.contains("Persson"), is_elastic);
+        assert!(chart("merge_tree.svg")?.contains("first node"));
+        assert!(!folder.join("seen/merge_tree.png").exists());
+    }
+    Ok(())
+}
+
 /// A path that has only touched has an answer for programs too. What is advised names the record as a shell reads it.
 #[test]
 fn a_path_without_load_is_told() -> Result<(), Box<dyn Error>> {

@@ -292,7 +292,12 @@ fn interrupted_paths_go_on() -> Done {
     let folder = Scratch::new("records-interrupted")?;
     const LONG: &str = "path --nodes 128 --max-area-fraction 0.3 --updater cholesky";
     printed(&folder.0, &format!("{LONG} --out whole"))?;
-    for (options, record) in [("--record kept.npz", "kept.npz"), ("", "out/interrupted.npz")] {
+    // Without a name it goes beside a record of another surface.
+    let other = folder.join("out/interrupted.npz");
+    for (options, record) in [("--record kept.npz", "kept.npz"), ("", "out/interrupted_2.npz")] {
+        fs::create_dir_all(folder.join("out"))?;
+        printed(&folder.0, "path --nodes 16 --record out/interrupted.npz --out other")?;
+        let before = fs::read(&other)?;
         let done = signalled(&folder.0, &format!("{LONG} {options}"), &["-INT"])?;
         let said = said(&done);
         assert_eq!(done.status.code(), Some(130), "{said}");
@@ -307,6 +312,7 @@ fn interrupted_paths_go_on() -> Done {
         let again = format!("path --resume {record} --max-area-fraction 0.3 --updater cholesky");
         printed(&folder.0, &again)?;
         are_identical(&folder.join("out/path.csv"), &folder.join("whole/path.csv"))?;
+        assert_eq!(fs::read(&other)?, before);
         fs::remove_dir_all(folder.join("out"))?;
     }
     // All options come again, and do what they would have done.
@@ -335,9 +341,9 @@ fn interrupted_paths_go_on() -> Done {
     let [resumed, whole] = headers;
     assert_eq!(resumed?, whole?);
     // What a batch system sends does the same.
-    let done = signalled(&folder.0, &format!("{LONG} --record term.npz"), &["-TERM"])?;
+    let done = signalled(&folder.0, LONG, &["-TERM"])?;
     assert_eq!(done.status.code(), Some(130), "{}", said(&done));
-    assert!(folder.join("term.npz").is_file());
+    assert!(other.is_file());
     // Of many paths the one that is interrupted leaves nothing, and nothing is said of it.
     let soft =
         "path --nodes 64 --side 100um --rolloff 50um --short-cutoff 25um --sq 2um --e-star 1MPa";

@@ -5,6 +5,7 @@ mod common;
 
 use std::ffi::OsStr;
 use std::fs;
+use std::path::Path;
 
 use asperity::io::read_npy;
 use asperity_testing::report;
@@ -45,7 +46,8 @@ fn a_path_and_its_record_have_one_page() {
         "path --nodes 32 --max-area-fraction 0.2 --yield --unload --report --record out/path.npz";
     let printed = done(&folder, path);
     let wrote: Vec<&str> = printed.lines().filter(|line| line.starts_with("wrote")).collect();
-    assert_eq!(wrote[0], "wrote out/report.html");
+    let written = Path::new("out").join("report.html");
+    assert_eq!(wrote[0], format!("wrote {}", written.display()));
     let live = data(&folder, "out/report.html");
     assert_eq!(live["command"], format!("asperity {path}"));
     let live = &live["records"][0];

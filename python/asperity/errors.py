@@ -1,6 +1,6 @@
 """Exceptions and warnings of asperity.
 
-Every exception is an `AsperityError`, and so a `ValueError`. Those of a kind that Python knows by another name are that
+Each exception here is an `AsperityError`, so a `ValueError`. Those of a kind that Python knows by another name are that
 as well: files are `OSError`, iterations that do not converge `RuntimeError`, memory `MemoryError`. The numbers that an
 exception tells are its attributes, `error.value` for example; `error.kind` is the name of the error in the Rust
 library, and `error.numbers` holds all attributes. A node has `row` and `column`, and the same as `iy` and `ix`.

@@ -1,10 +1,12 @@
 //! Computing without the lock of the interpreter, on threads that belong to this process.
 
+use std::fmt::Display;
 use std::mem;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyOSError;
@@ -43,8 +45,11 @@ pub(crate) fn pool(py: Python<'_>) -> Fallible<Arc<ThreadPool>> {
 /// So many threads; 0 for as many as there are processors, or as `RAYON_NUM_THREADS` says.
 fn made(count: usize) -> Fallible<Arc<ThreadPool>> {
     let pool = ThreadPoolBuilder::new().num_threads(count).build();
-    let refused = |error| PyOSError::new_err(format!("no threads are to be had: {error}"));
     Ok(Arc::new(pool.map_err(refused)?))
+}
+
+fn refused(error: impl Display) -> PyErr {
+    PyOSError::new_err(format!("no threads are to be had: {error}"))
 }
 
 /// Does work without the lock of the interpreter, so that other threads of Python go on.
@@ -59,11 +64,28 @@ pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Fallible<T> {
+    interruptible_with(py, &Arc::default(), move |_: &mut ()| work())
+}
+
+/// The same with what is locked meanwhile, to the end of the work and not only of the wait.
+pub(crate) fn interruptible_with<L: Send + 'static, T: Send + 'static>(
+    py: Python<'_>,
+    lock: &Arc<Mutex<L>>,
+    work: impl FnOnce(&mut L) -> T + Send + 'static,
+) -> Fallible<T> {
     let (send, receive) = mpsc::channel();
-    pool(py)?.spawn(move || {
+    let (pool, lock) = (pool(py)?, Arc::clone(lock));
+    // Who holds the lock may wait for all threads of the pool: none of them waits for the lock.
+    let begun = thread::Builder::new().spawn(move || {
+        let done = catch_unwind(AssertUnwindSafe(|| {
+            let mut locked = lock.lock().unwrap_or_else(PoisonError::into_inner);
+            let locked = &mut *locked;
+            pool.install(|| work(locked))
+        }));
         // Nobody listens after an interruption.
-        let _ = send.send(catch_unwind(AssertUnwindSafe(work)));
+        let _ = send.send(done);
     });
+    begun.map_err(refused)?;
     let mut waiting = Some(Answers::new(receive));
     let done = wait(py, &mut waiting)?;
     match done {

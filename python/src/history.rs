@@ -6,7 +6,7 @@ use asperity::contact::PlasticState;
 use asperity::patches::ContactEdge;
 use asperity::{Boundary, ContactEvent, ContactState, Error, Grid, LoadingState, loading};
 use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode, PyReadonlyArray1};
-use pyo3::exceptions::PyIndexError;
+use pyo3::exceptions::{PyIndexError, PyOverflowError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PySliceMethods, PyTuple};
 
@@ -119,6 +119,19 @@ pub(crate) fn iterated<'py>(
     Ok(builtins.getattr("map")?.call1((sequence.getattr("__getitem__")?, places))?)
 }
 
+/// The one of some states that an index means, which may be an integer of any size.
+pub(crate) fn state_at<'a, T>(states: &'a [T], index: &Bound<'_, PyAny>) -> PyResult<&'a T> {
+    let count = states.len();
+    let place = match index.extract::<isize>() {
+        Err(error) if error.is_instance_of::<PyOverflowError>(index.py()) => None,
+        Err(error) => return Err(error),
+        // Below 0 from the end.
+        Ok(place) => usize::try_from(place).ok().or_else(|| count.checked_add_signed(place)),
+    };
+    let missing = || PyIndexError::new_err(format!("there are {count} states"));
+    place.and_then(|place| states.get(place)).ok_or_else(missing)
+}
+
 /// What a history is of.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Setting {
@@ -163,15 +176,6 @@ impl Setting {
 pub(crate) struct History {
     pub(crate) history: Arc<loading::History>,
     pub(crate) setting: Setting,
-}
-
-/// A place in a history, or some of them.
-#[derive(FromPyObject)]
-enum Place<'py> {
-    #[pyo3(transparent)]
-    One(isize),
-    #[pyo3(transparent)]
-    Some(Bound<'py, PySlice>),
 }
 
 impl History {
@@ -438,31 +442,25 @@ impl History {
         iterated(slf, slf.get().states().len())
     }
 
-    fn __getitem__<'py>(&self, py: Python<'py>, index: Place<'py>) -> Fallible<Bound<'py, PyAny>> {
+    fn __getitem__<'py>(
+        &self,
+        py: Python<'py>,
+        index: &Bound<'py, PyAny>,
+    ) -> Fallible<Bound<'py, PyAny>> {
         let states = self.states();
-        match index {
-            Place::One(index) => {
-                let count = states.len();
-                let place = if index < 0 { index + count as isize } else { index };
-                let state = usize::try_from(place).ok().and_then(|place| states.get(place));
-                match state {
-                    Some(state) => Ok(Bound::new(py, State::new(*state))?.into_any()),
-                    None => Err(PyIndexError::new_err(format!("state {index} of {count}")).into()),
-                }
-            }
-            Place::Some(slice) => {
-                let count = isize::try_from(states.len()).unwrap_or(isize::MAX);
-                let found = slice.indices(count)?;
-                if found.step < 0 {
-                    return Err(Failure::arguments("the states of a history are in their order"));
-                }
-                let places = (found.start..found.stop).step_by(found.step as usize);
-                let kept = places.filter_map(|place| states.get(place as usize)).copied();
-                let layering = self.history.layering();
-                let history = Arc::new(kept.collect::<loading::History>().on(layering));
-                Ok(Bound::new(py, Self { history, setting: self.setting })?.into_any())
-            }
+        let Ok(slice) = index.cast::<PySlice>() else {
+            return Ok(Bound::new(py, State::new(*state_at(states, index)?))?.into_any());
+        };
+        let count = isize::try_from(states.len()).unwrap_or(isize::MAX);
+        let found = slice.indices(count)?;
+        if found.step < 0 {
+            return Err(Failure::arguments("the states of a history are in their order"));
         }
+        let places = (found.start..found.stop).step_by(found.step as usize);
+        let kept = places.filter_map(|place| states.get(place as usize)).copied();
+        let layering = self.history.layering();
+        let history = Arc::new(kept.collect::<loading::History>().on(layering));
+        Ok(Bound::new(py, Self { history, setting: self.setting })?.into_any())
     }
 
     fn __eq__(&self, other: PyRef<'_, Self>) -> bool {

@@ -185,8 +185,9 @@ impl Seal {
         states: usize,
         check: bool,
     ) -> Fallible<Bound<'py, PyAny>> {
-        let (seal, history) = (self.seal, path.history_now(py).history);
-        let curve = path.computed(py, |engine| seal.curve(engine, &history, states))?;
+        let seal = self.seal;
+        let curve =
+            path.interruptible(py, move |engine, history| seal.curve(engine, history, states))?;
         if check {
             let pressures = curve.points.iter().map(|point| point.state.contact.mean_pressure());
             warn_all(py, Warning::of_pressure_drop(seal.pressure_drop(), pressures))?;

@@ -123,7 +123,8 @@ fn report(
     };
     let paths = [Some((path, name, folder)), other.map(|other| (other, other_name, None))];
     for (path, name, folder) in paths.into_iter().flatten() {
-        page = path.with_record(py, |engine, record| {
+        let name = name.to_string();
+        page = path.with_record(py, move |engine, record| {
             let source = Source::new(name, record).computed_by(engine);
             page.add(match folder {
                 Some(folder) => source.with_folder(&folder),

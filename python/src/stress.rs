@@ -133,8 +133,9 @@ fn first_yield<'py>(
     angle: f64,
 ) -> Fallible<Option<Bound<'py, PyAny>>> {
     let below = of_path(py, &path, poissons_ratio, (friction, angle))?;
-    let history = path.history_now(py).history;
-    let found = path.computed(py, |engine| below.first_yield(engine, &history, yield_stress))?;
+    let found = path.interruptible(py, move |engine, history| {
+        below.first_yield(engine, history, yield_stress)
+    })?;
     found.map(|found| of_first(py, found)).transpose()
 }
 
@@ -165,8 +166,9 @@ fn first_yields<'py>(
 ) -> Fallible<Vec<Option<Bound<'py, PyAny>>>> {
     let strengths = Found::of(yield_stresses, "yield_stresses", Kind::Real)?.list()?;
     let below = of_path(py, &path, poissons_ratio, (friction, angle))?;
-    let history = path.history_now(py).history;
-    let found = path.computed(py, |engine| below.first_yields(engine, &history, &strengths))?;
+    let found = path.interruptible(py, move |engine, history| {
+        below.first_yields(engine, history, &strengths)
+    })?;
     found.into_iter().map(|found| found.map(|found| of_first(py, found)).transpose()).collect()
 }
 
@@ -187,11 +189,11 @@ fn of_path(
     let known = || path.elastic_bodies(py).first().map(|(_, ratio)| *ratio);
     let ratio = poissons_ratio.or_else(known);
     // Layers have ratios of their own.
-    let of_record = |record: &LoadingRecord| match ratio {
+    let of_record = move |record: &LoadingRecord| match ratio {
         None if record.kernel().origin.composite_modulus().is_some() => Ok(None),
         _ => Subsurface::of_record(record, ratio.unwrap_or_default()).map(Some),
     };
-    let below = path.with_record(py, |_, record| of_record(record))?.ok_or_else(|| {
+    let below = path.with_record(py, move |_, record| of_record(record))?.ok_or_else(|| {
         Failure::arguments("give poissons_ratio, unless the path knows its bodies")
     })?;
     if poissons_ratio.is_some() && below.layers().is_some() {

@@ -17,6 +17,9 @@ import asperity as asp
 REPOSITORY = Path(__file__).resolve().parents[2]
 DATA = REPOSITORY / "tests" / "data"
 
+# What is small in SI units is compared with itself alone.
+setattr(type(pytest.approx(1.0)), "DEFAULT_ABSOLUTE_TOLERANCE", 0.0)
+
 
 def measured(name: str, size: tuple[float, float]) -> asp.Surface:
     """A surface of the tests of the library, whose arrays are [ix, iy]."""

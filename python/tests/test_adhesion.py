@@ -100,8 +100,9 @@ def test_forces_and_loops(surface: asp.Surface) -> None:
     at = off.approach_at(-0.5 * off.pull_off)
     assert at is not None and off.load_at(at) == pytest.approx(-0.5 * off.pull_off, rel=1e-12)
     assert off.load_at(1.0) is None
-    with pytest.raises(IndexError):
-        off[len(off)]
+    for beyond in [len(off), -len(off) - 1, 10**30]:
+        with pytest.raises(IndexError):
+            off[beyond]
 
 
 def test_pickles_and_records(surface: asp.Surface, tmp_path: Path) -> None:

@@ -143,6 +143,35 @@ def test_ctrl_c_in_a_survey_of_stresses() -> None:
 
 
 @pytest.mark.skipif(not POSIX, reason="signals of POSIX")
+def test_signals_while_many_states_are_computed(body: asp.HalfSpace) -> None:
+    """Handlers run meanwhile, not once at the end; one that raises ends the wait, and the path can be used after."""
+    path = asp.load_path(asp.example_surface(nodes=160), body, nodes=100, check=False)
+    path.run(check=False)
+    noticed: list[int] = []
+    before = signal.signal(signal.SIGALRM, lambda number, frame: noticed.append(number))
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
+        for ask in [
+            lambda: asp.Seal(1e-3, 1e5, along="x").curve(path, states=5, check=False),
+            lambda: asp.first_yield(path, 1e8, 0.3),
+            lambda: asp.first_yields(path, [1e8], 0.3),
+            lambda: asp.report(path),
+        ]:
+            noticed.clear()
+            ask()
+            assert len(noticed) > 3
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        with pytest.raises(KeyboardInterrupt):
+            asp.report(path)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert path.pressure().max() > 0.0
+
+
+@pytest.mark.skipif(not POSIX, reason="signals of POSIX")
 def test_ctrl_c_in_a_sweep() -> None:
     """What was under way comes next."""
     surface = asp.example_surface(nodes=512)

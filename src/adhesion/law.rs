@@ -54,7 +54,7 @@ pub struct Adhesion {
 }
 
 impl Adhesion {
-    /// No adhesion at w = 0: the states of the path without it. Otherwise a triangle, h₁ = 0, of this work of adhesion
+    /// No adhesion at w = 0: the states of the path without it, of bodies whose contact grows. Otherwise a triangle, h₁ = 0, of this work of adhesion
     /// w \[J/m²\]. Unless a [`range`](Self::range) is given it is as short as the cells of the path resolve,
     /// k C(0,0) = 0.45: the limit of JKR as far as this mesh goes.
     #[must_use]
@@ -119,6 +119,12 @@ impl Adhesion {
         if work == 0.0 {
             return Ok(CohesiveLaw { stress: 0.0, flat: 0.0, range: 0.0, compliance });
         }
+        Error::require(
+            "displacement of a cell by its own unit pressure, about the mean planes",
+            compliance,
+            compliance > 0.0,
+            "positive: a single cell that repeats is not pulled out of its plane",
+        )?;
         let (cell, range) = (table.grid().dx().max(table.grid().dy()), self.range);
         let (stress, flat, range) = match self.stress {
             None => {

@@ -25,7 +25,7 @@ use crate::{Error, Grid, Problem};
 const WATCHED: usize = 64;
 const SOFT_FOR_ONE: usize = 4;
 /// How far the load of a state may be from what its nodes carry, relative to the sum of all forces: loads agree to
-/// 1e-12 whatever the windows were, and another processor rounds otherwise.
+/// 1e-12 whatever the windows were, or 1e-13 h₂/(h₂ − h₁) where that is more, and another processor rounds otherwise.
 const SAME_LOAD: f64 = 1e-9;
 /// The same as [`SAME_LOAD`] of a state whose fields are asked for, and of its approach: one of another path is further
 /// off.
@@ -182,7 +182,7 @@ impl AdhesivePath {
             return Err(Error::CannotContinue { steps: self.last.map_or(0, |state| state.step) });
         }
         let present = self.last.map_or_else(|| self.body.apart(), |state| state.contact);
-        targets.check_ahead(&present, direction, self.plain.is_none())?;
+        targets.check_ahead((&self.grid(), &present), direction, self.plain.is_none())?;
         self.go_back().inspect_err(|_| self.end = Some(AdhesiveEnd::Failed))?;
         if let Some(plain) = &mut self.plain {
             plain.turn(direction, targets.all());
@@ -216,9 +216,10 @@ impl AdhesivePath {
         }
     }
 
-    /// Where the branch is to end, as long as it has not.
-    pub(crate) fn pending(&self) -> Option<&[ContactTarget]> {
-        self.end().is_none().then(|| self.targets.all())
+    /// Which way the branch goes and where it is to end, as long as it has not come there.
+    pub(crate) fn pending(&self) -> Option<(Direction, &[ContactTarget])> {
+        let goes_on = matches!(self.end(), None | Some(AdhesiveEnd::Failed));
+        goes_on.then(|| (self.direction, self.targets.all()))
     }
 
     /// What has happened up to the present state.
@@ -229,7 +230,7 @@ impl AdhesivePath {
     }
 
     /// Puts a path that has not begun behind the last state of another one of the same problem: it goes on to the first
-    /// of the targets that it had before it; without them it has ended, and can turn around or go on.
+    /// of the targets that it had before it, on the same branch; without them it has ended, and can turn around or go on.
     ///
     /// # Errors
     ///
@@ -239,7 +240,7 @@ impl AdhesivePath {
         &mut self,
         trace: Trace,
         last: AdhesiveState,
-        pending: Option<&[ContactTarget]>,
+        pending: Option<(Direction, &[ContactTarget])>,
     ) -> Result<(), Error> {
         let mut most = 0;
         let nodes = trace.follow(self.grid().nodes(), |_, [.., in_contact]| {
@@ -263,12 +264,13 @@ impl AdhesivePath {
             });
         }
         self.totals = self.totals_at(&last);
-        self.direction = last.direction;
+        let (direction, targets) = pending.unwrap_or((last.direction, &[]));
+        self.direction = direction;
         self.trace = trace;
         self.last = Some(last);
-        self.targets = Targets::of(pending.unwrap_or_default(), &self.grid())?;
+        self.targets = Targets::of(targets, &self.grid())?;
         if let Some(plain) = &mut self.plain {
-            plain.turn(last.direction, self.targets.all());
+            plain.turn(direction, self.targets.all());
         }
         self.end = pending.is_none().then_some(AdhesiveEnd::Target);
         Ok(())

@@ -127,6 +127,10 @@ impl Plain {
 
     fn release(&mut self) -> Result<Option<Happened>, Error> {
         let Some(last) = self.now.checked_sub(1) else { return Ok(None) };
+        // A branch may turn around behind the last touch, and end before that.
+        if self.now == self.touches.len() && self.targets.iter().flatten().next().is_some() {
+            self.touch()?;
+        }
         let state = self.touches[last];
         if let Some(limit) = self.limit(&state.contact, -1.0)? {
             return Ok(Some(limit));

@@ -96,7 +96,7 @@ impl Targets {
     /// does, if they stick.
     pub(super) fn check_ahead(
         &self,
-        state: &ContactState,
+        (grid, state): (&Grid, &ContactState),
         direction: Direction,
         sticks: bool,
     ) -> Result<(), Error> {
@@ -111,10 +111,10 @@ impl Targets {
                     ("contact area fraction", fraction, state.contact_area_fraction, sign)
                 }
             };
-            let way = match (target, self.nodes) {
-                // In nodes: a fraction need not be a whole number of them.
-                (ContactTarget::AreaFraction(_), Some(nodes)) => {
-                    nodes as f64 - state.contact_nodes as f64
+            let way = match *target {
+                // A fraction need not be a whole number of nodes.
+                ContactTarget::AreaFraction(fraction) => {
+                    grid.nodes_in(fraction)? as f64 - state.contact_nodes as f64
                 }
                 _ => value - present,
             };

@@ -489,12 +489,15 @@ impl<'a> Play<'a> {
         let limit = self.limit();
         let first = until.min(limit);
         let is_enough = self.is_enough(most, next);
+        let View { targets, direction, .. } = *self.view;
+        // Where a branch of unloading begins with as few nodes as are asked for, others may be about to part.
+        let is_there = targets.is_reached(self.board.contact_nodes, direction);
         if first == f64::INFINITY || self.events > 0 && (self.time + first > self.end || is_enough)
         {
             return false;
         }
         self.advance(first);
-        let place = next.filter(|_| until <= limit).map(|(_, place)| place);
+        let place = next.filter(|_| until <= limit && !is_there).map(|(_, place)| place);
         let place = place.filter(|&place| !self.is_too_many(place));
         // Behind a jump the target would be passed: where it ties with the beginning of one, it comes first.
         let ties = limit - until <= ROUNDING * self.length;

@@ -60,7 +60,7 @@
 mod superposition;
 /// What a load or an approach may exceed the last of a path by, relative to it, and still be meant to be it.
 const AT_THE_END: f64 = 1e-12;
-/// By what part of itself a quantity may go back from one state to the next: where a kernel promises nothing, each state
+/// By what part of its size a quantity may go back from one state to the next: where a kernel promises nothing, each state
 /// of a tie has been solved for by itself, by iterations perhaps.
 const ROUNDING: f64 = 1e-10;
 
@@ -148,7 +148,7 @@ impl<'a> Bed<'a> {
         let mut last = [0.0, 0.0, first.contact.mean_gap];
         for state in states {
             check_event(state)?;
-            let now = grown(last, state)?;
+            let now = grown(last, state, first.contact.mean_gap)?;
             energy += (0.5 * last[0] + 0.5 * now[0]) * (now[1] - last[1]);
             if !energy.is_finite() {
                 return Err(Error::NotFinite { step: state.step });
@@ -379,8 +379,9 @@ fn check_event(state: &LoadingState) -> Result<(), Error> {
     Err(BedError::NotElasticGrowth { event: state.step, ix, iy, happens, instead }.into())
 }
 
-/// Load, approach and mean gap of a state behind others, which fall and rise by no more than rounding there.
-fn grown(last: [f64; 3], state: &LoadingState) -> Result<[f64; 3], Error> {
+/// Load, approach and mean gap of a state behind others, which fall and rise by no more than rounding there. A mean gap
+/// is a difference of lengths as great as that at first touch.
+fn grown(last: [f64; 3], state: &LoadingState, open: f64) -> Result<[f64; 3], Error> {
     let now = [state.contact.load, state.contact.approach, state.contact.mean_gap];
     let grown = [now[0].max(last[0]), now[1].max(last[1]), now[2].min(last[2])];
     let quantities = [
@@ -390,7 +391,8 @@ fn grown(last: [f64; 3], state: &LoadingState) -> Result<[f64; 3], Error> {
     ];
     for (k, (quantity, expected)) in quantities.into_iter().enumerate() {
         let (value, before) = (now[k], last[k]);
-        let is_right = (value - grown[k]).abs() <= ROUNDING * before.abs();
+        let size = [before.abs(), before.abs(), open][k];
+        let is_right = (value - grown[k]).abs() <= ROUNDING * size;
         if !is_right || !value.is_finite() {
             let step = state.step;
             return Err(BedError::NotMonotone { step, quantity, value, before, expected }.into());

@@ -160,7 +160,7 @@ impl ContactState {
     }
 
     /// dW/dδ for the approach of this state: of the mean planes if there is no other.
-    fn load_rate(&self) -> Option<f64> {
+    pub(crate) fn load_rate(&self) -> Option<f64> {
         let yielding = self.plastic.filter(|plastic| plastic.volume_per_load != 0.0);
         self.contact_stiffness.or_else(|| match (self.interfacial_stiffness, yielding) {
             // Mean planes approach by what the mean gap closes and by what yields.

@@ -4,7 +4,7 @@ use super::level::Level;
 use super::plateau::Plateau;
 use super::solution::FixedLoadSolution;
 use super::stepper::Stepper;
-use super::tuning::{LONGEST, MOST_STEPS, NARROWEST, ROUNDING, TYPICAL};
+use super::tuning::{LONGEST, MOST_LAME, MOST_STEPS, NARROWEST, ROUNDING, TYPICAL};
 use crate::Error;
 use crate::contact::{ContactState, ContactTarget};
 
@@ -86,8 +86,8 @@ impl Sought {
             Self::MeanGap { target, unloaded } => {
                 (state.mean_gap - target).abs() <= error.max(ROUNDING * unloaded)
             }
-            Self::Approach { target, unloaded } => {
-                (state.approach - target).abs() <= error.max(ROUNDING * unloaded)
+            Self::Approach { target, .. } => {
+                (state.approach - target).abs() <= error.max(ROUNDING * target)
             }
         }
     }
@@ -148,6 +148,8 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
     let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);
     let mut nearest: Option<((bool, f64), FixedLoadSolution)> = None;
     let mut previous = None;
+    // How far off the search was, and how wide the bracket, when either had halved last, and the steps since.
+    let (mut halved, mut lame) = ([f64::INFINITY; 2], 0);
     let mut x = match stepper.last() {
         Some(last) => {
             let (x, beyond) = (last.load.ln(), sought.beyond(last, last.contact_nodes));
@@ -215,8 +217,14 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         let nearest_bound = if beyond > 0.0 { high } else { low };
         let mut next = nearest_bound.unwrap_or(x) + change;
         if let (Some(low), Some(high)) = (low, high) {
-            // NaN as well.
-            if !(next > low && next < high) {
+            let now = [beyond.abs(), high - low];
+            if now.iter().zip(halved).any(|(now, then)| *now <= 0.5 * then) {
+                (halved, lame) = (now, 0);
+            } else {
+                lame += 1;
+            }
+            // Where nothing changes over a range of loads, secants creep. NaN as well.
+            if lame >= MOST_LAME || !(next > low && next < high) {
                 next = low + 0.5 * (high - low);
             }
             if high - low <= NARROWEST * high.abs().max(1.0) {

@@ -37,17 +37,14 @@ impl Tangent {
     /// That of a solution, which costs a convolution; unknown if it has no stiffnesses.
     pub(super) fn of(level: &mut Level, solution: &FixedLoadSolution) -> Result<Self, Error> {
         let state = &solution.contact;
-        let interfacial = match state.interfacial_stiffness {
-            // On a plateau there is none.
-            Some(interfacial) if interfacial > 0.0 && !solution.pressure_rate.is_empty() => {
-                interfacial
-            }
-            _ => return Ok(Self::default()),
+        // On a plateau there is none.
+        let has_rate = !state.is_plateau() && !solution.pressure_rate.is_empty();
+        let Some(rate) = state.load_rate().filter(|rate| has_rate && *rate > 0.0) else {
+            return Ok(Self::default());
         };
-        // 1 / K = 1 / Kᵢ + s / ΔA in the gauge s.
-        let cell_area = level.grid.cell_area();
-        let in_gauge = Gauge::new(level.gauge, cell_area).stiffness(interfacial);
-        let stiffness = state.contact_stiffness.unwrap_or(in_gauge);
+        // 1 / K = 1 / K of the mean planes + s / ΔA in the gauge s.
+        let gauge = Gauge::new(level.gauge, level.grid.cell_area());
+        let stiffness = state.contact_stiffness.unwrap_or_else(|| gauge.stiffness(rate));
         let rates = solution.pressure_rate.iter();
         let rate: Vec<f64> = rates.map(|rate| stiffness * rate).collect();
         let displacement =
@@ -76,7 +73,9 @@ impl Tangent {
             let (nx, ny) = level.grid.shape();
             solution.pressure_rate = DMatrix::zeros(nx, ny);
             solution.contact.contact_stiffness = level.gauge.is_none().then_some(0.0);
-            solution.contact.interfacial_stiffness = Some(0.0);
+            let is_full = in_contact.iter().all(|in_contact| *in_contact);
+            let interfacial = if is_full { f64::INFINITY } else { 0.0 };
+            solution.contact.interfacial_stiffness = Some(interfacial);
             return Ok(());
         }
         let solved = inside(|| level.in_gauge(|level| self.solve(level, settings)))?;

@@ -73,6 +73,9 @@ pub(super) const NO_REST: f64 = 1e-12;
 
 /// Steps after which to give up; bisection alone would halve the bracket so often.
 pub(super) const MOST_STEPS: usize = 100;
+/// Steps within a bracket after which one halves it, if neither it nor the distance to what is sought has halved: of
+/// bodies in full contact that have not begun to yield the approach does not change with the load.
+pub(super) const MOST_LAME: usize = 3;
 /// Longest step as the logarithm of a load, as long as there is a bound on one side only.
 pub(super) const LONGEST: f64 = 1.5;
 /// A bracket of loads that is narrower, relative to the load, holds nothing more.

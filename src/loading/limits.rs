@@ -220,13 +220,13 @@ impl Limits {
         next: &LoadingState,
     ) -> Option<(LoadingEnd, Option<LoadingState>)> {
         let last = last?;
-        if let Some((end, state)) = self.first_exceeded(&last.contact, Some(&next.contact)) {
-            return Some((end, last.at_limit(state)));
-        }
         // What comes next is one more node, or a yield behind the last one.
         let beyond = next.event != ContactEvent::Release;
-        let end = beyond.then(|| self.enough(last.contact.contact_nodes)).flatten();
-        end.map(|end| (end, None))
+        if let Some(end) = beyond.then(|| self.enough(last.contact.contact_nodes)).flatten() {
+            return Some((end, None));
+        }
+        let (end, state) = self.first_exceeded(&last.contact, Some(&next.contact))?;
+        Some((end, last.at_limit(state)))
     }
 
     /// The same behind the last event that there is, from where on everything is linear, and no gap closes.
@@ -421,6 +421,10 @@ mod tests {
             let at_limit = at_limit.flatten().map(|state| (state.event, state.contact.load));
             assert_eq!(at_limit, Some((ContactEvent::Limit, load)));
         }
+        // Enough nodes are there before whatever comes behind them.
+        let area = ContactTarget::AreaFraction(0.05);
+        let at = limits(&[area, Load(5.0), Approach(1.5)])?.between(Some(last), &next);
+        assert_eq!(at, Some((LoadingEnd::AreaFraction, None)));
         // At the limit already, and the next state at it: that one comes.
         let at = limits(&[Load(4.0)])?.between(Some(last), &next);
         assert_eq!(at, Some((LoadingEnd::Load, None)));

@@ -114,7 +114,8 @@ impl Single {
         let contact_nodes = run.contact.len();
         let event = (step, next.event, next.node);
         let checked = self.survey(run, phase).and_then(|()| {
-            let scalars = run.scalars;
+            let mut scalars = run.scalars;
+            scalars.clamp_mean_gap();
             let error = scalars.reported_error(next.error, 0.0).max(inherited);
             run.enqueue_at(&scalars, event, contact_nodes, error)
         });

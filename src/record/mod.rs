@@ -303,7 +303,8 @@ impl LoadingRecord {
     ///
     /// The same nodes touch next as on a path that was never interrupted. A record [made](Self::new) at the last state
     /// of its path knows where the window of that state ended, and how the factor grew: all states are the same bit for
-    /// bit. Otherwise they are the same to their estimated error, with a factor to rounding: windows begin elsewhere.
+    /// bit, on a kernel [with a gauge](crate::PeriodicBoussinesq::with_gauge) of yours to rounding. Otherwise they are
+    /// the same to their estimated error, with a factor to rounding: windows begin elsewhere.
     ///
     /// # Errors
     ///

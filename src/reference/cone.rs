@@ -86,8 +86,10 @@ impl Cone {
         if r <= a {
             return positive_part(approach) - self.slope * r;
         }
-        // r − √(r² − a²) without its cancellation far away.
-        let rest = a * (a / (r + ((r - a) * (r + a)).sqrt()));
-        self.slope * (a * (a / r).asin() - rest)
+        // r − √(r² − a²) without its cancellation far away. Both terms are functions of one a/r, so that what it has lost
+        // at the edge, where either is steep, cancels.
+        let sine = a / r;
+        let rest = a * (sine / (1.0 + ((1.0 - sine) * (1.0 + sine)).sqrt()));
+        self.slope * (a * sine.asin() - rest)
     }
 }

@@ -4,11 +4,12 @@ use asperity::adhesion::{
     Adhesion, AdhesiveBuilder, AdhesiveEnd, AdhesiveEvent, AdhesivePath, AdhesiveState,
 };
 use asperity::record::AdhesiveRecord;
-use asperity::surface::{Amplitude, SelfAffine};
+use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::{
     AdhesionError, Boussinesq, ContactState, ContactTarget, Error, Grid, InfluenceKernel,
     PeriodicBoussinesq,
 };
+use nalgebra::DMatrix;
 
 fn surface() -> SelfAffine {
     SelfAffine::new(0.8, 0.5, 0.25, Amplitude::RmsHeight(0.02), 5).unwrap()
@@ -260,5 +261,85 @@ fn what_lies_behind_is_refused() {
         plain.unload().unwrap();
         run(&mut plain);
         assert!(is_behind(plain.load_to(ContactTarget::Load(-1.0))));
+    }
+}
+
+/// As many nodes as there are: none parts, also where the next one is about to.
+#[test]
+fn areas_that_are_met_lose_no_node() {
+    for kernel in kernels() {
+        for work in [1e-3, 0.0] {
+            let mut nodes = 0;
+            for steps in 1.. {
+                let mut path = builder(&surface(), &*kernel, work).build().unwrap();
+                let states: Vec<_> = path.by_ref().take(steps).map(Result::unwrap).collect();
+                let last = states[states.len() - 1];
+                if last.contact.contact_nodes > nodes {
+                    nodes = last.contact.contact_nodes;
+                    let area = ContactTarget::AreaFraction(last.contact.contact_area_fraction);
+                    path.unload_to(area).unwrap();
+                    let back = run(&mut path);
+                    let found = path.state().unwrap().contact;
+                    assert_eq!(found.contact_nodes, nodes, "{work} {steps} {back:?}");
+                    assert_eq!(path.end(), Some(AdhesiveEnd::Target));
+                }
+                if states.len() < steps {
+                    break;
+                }
+            }
+            assert_eq!(nodes, kernel.grid().nodes());
+        }
+    }
+}
+
+/// Without adhesion a path may turn around between two touches, and end before the first of them.
+#[test]
+fn limits_behind_the_last_touch_turn_around() {
+    for kernel in kernels() {
+        let whole = run(&mut builder(&surface(), &*kernel, 0.0).build().unwrap());
+        let between = |part: f64| {
+            let [from, to] = [30, 31].map(|k| whole[k].contact.load);
+            ContactTarget::Load((1.0 - part) * from + part * to)
+        };
+        let limit = |path: &mut AdhesivePath| {
+            let states = run(path);
+            assert_eq!(path.end(), Some(AdhesiveEnd::Target));
+            states[states.len() - 1]
+        };
+        let mut path = builder(&surface(), &*kernel, 0.0).until(between(0.7)).build().unwrap();
+        assert_eq!(limit(&mut path).event, AdhesiveEvent::Limit);
+        path.unload_to(between(0.4)).unwrap();
+        let back = limit(&mut path);
+        let mut straight = builder(&surface(), &*kernel, 0.0).until(between(0.4)).build().unwrap();
+        assert_eq!(back.contact, limit(&mut straight).contact);
+        path.unload().unwrap();
+        assert_eq!(run(&mut path).len(), 31);
+    }
+}
+
+/// Of several areas the one that is behind is named, and a single cell that repeats says what is wrong.
+#[test]
+fn what_is_refused_is_named() {
+    let [kernel, _] = kernels();
+    let mut path = builder(&surface(), &*kernel, 1e-3)
+        .until(ContactTarget::AreaFraction(0.3))
+        .build()
+        .unwrap();
+    run(&mut path);
+    let areas = [0.5, 0.2].map(ContactTarget::AreaFraction);
+    let refused = path.load_to_first_of(&areas);
+    let named = |value: f64| value == 0.2;
+    assert!(
+        matches!(refused, Err(Error::Adhesion(AdhesionError::Behind { value, .. })) if named(value)),
+        "{refused:?}"
+    );
+    let cell = PeriodicBoussinesq::new(Grid::square(1, 1.0).unwrap(), 1.0).unwrap();
+    let flat = HeightMap::new(DMatrix::zeros(1, 1)).unwrap();
+    for law in [Adhesion::work(1.0), Adhesion::work(1.0).range(0.5)] {
+        let refused = AdhesivePath::builder(&flat, &cell, law).build();
+        assert!(
+            matches!(refused, Err(Error::OutOfRange { value: 0.0, expected, .. }) if expected.contains("single cell")),
+            "{refused:?}"
+        );
     }
 }

@@ -157,3 +157,75 @@ fn areas_are_numbers_of_nodes() {
     let refused = matches!(ahead, Err(Error::Adhesion(AdhesionError::Behind { .. })));
     assert!(refused, "{ahead:?}");
 }
+
+/// A path that has failed has not come to its target, nor has its record.
+#[test]
+fn a_path_that_failed_goes_on_from_its_record() {
+    let (surface, kernel) = (surface(), periodic());
+    let target = ContactTarget::AreaFraction(0.9);
+    let builder = || AdhesivePath::builder(&surface, &kernel, Adhesion::work(1e-3)).until(target);
+    let whole = builder().build().unwrap().run().unwrap();
+    // In windows that do not fit some time.
+    let mut paths = (10..).map(|k| builder().memory_budget(k << 12).build());
+    let (path, states) = paths
+        .find_map(|path| {
+            let mut path = path.ok()?;
+            let states: AdhesiveBranch = path.by_ref().map_while(Result::ok).collect();
+            (states.states().len() > 20).then_some((path, states))
+        })
+        .unwrap();
+    assert_eq!(path.end(), Some(AdhesiveEnd::Failed));
+    assert!(states.states().len() < whole.states().len());
+    let mut path = AdhesiveRecord::new(&path, states.clone()).unwrap().path().unwrap();
+    assert_eq!(path.end(), None);
+    let mut all = states;
+    all.extend(path.run().unwrap().states().iter().copied());
+    assert_same(&all, &whole);
+    assert_eq!(path.end(), Some(AdhesiveEnd::Target));
+}
+
+/// A record of a path that has turned around, and has no state there yet, goes on the way it has turned to.
+#[test]
+fn records_know_which_way_a_path_goes() {
+    for work in [1e-3, 0.0] {
+        let (surface, kernel) = (surface(), periodic());
+        let builder = AdhesivePath::builder(&surface, &kernel, Adhesion::work(work));
+        let mut path = builder.until(ContactTarget::AreaFraction(0.4)).build().unwrap();
+        let states = path.run().unwrap();
+        let least = 0.2 * states.states().last().unwrap().contact.contact_area_fraction;
+        for target in [Some(ContactTarget::AreaFraction(least)), None] {
+            match target {
+                Some(target) => path.unload_to(target).unwrap(),
+                None => path.unload().unwrap(),
+            }
+            let record = AdhesiveRecord::new(&path, states.clone()).unwrap();
+            let file = std::env::temp_dir().join(format!("turned-{}.npz", std::process::id()));
+            record.write_npz(&file, &[]).unwrap();
+            let read = AdhesiveRecord::read_npz(&file).unwrap();
+            std::fs::remove_file(file).unwrap();
+            let mut expected = record.path().unwrap();
+            let mut again = read.path().unwrap();
+            assert_eq!(again.run().unwrap(), expected.run().unwrap());
+            let last = again.state().unwrap();
+            assert_eq!(last.direction, Direction::Unloading);
+            assert!(last.contact.contact_area_fraction <= least, "{last:?}");
+        }
+    }
+}
+
+/// The energies of a stiff body that is flat but for its roughness are small beside those in the gauge.
+#[test]
+fn great_pressures_on_mean_planes_are_a_record() {
+    let kernel = PeriodicBoussinesq::new(Grid::square(N, 1e-2).unwrap(), 1e11).unwrap();
+    let height = Amplitude::RmsHeight(1e-9);
+    let surface = SelfAffine::new(0.8, 0.5e-2, 0.25e-2, height, 5).unwrap();
+    for (work, pressure) in [(1e-3, 1e9), (1e-2, 3e9)] {
+        let mut path = AdhesivePath::builder(&surface, &kernel, Adhesion::work(work))
+            .until(ContactTarget::MeanPressure(pressure))
+            .build()
+            .unwrap();
+        let states = path.run().unwrap();
+        let record = AdhesiveRecord::new(&path, states).unwrap();
+        assert_eq!(record.path().unwrap().state(), path.state());
+    }
+}

@@ -227,3 +227,68 @@ fn sweeps_leave_plateaus_for_other_mean_gaps() {
         }
     }
 }
+
+/// A surface without any correlation, and the root mean square of its gradient over neighbours on either side.
+fn white(nx: usize, ny: usize, seed: usize) -> (HeightMap, f64) {
+    let height = |ix: usize, iy: usize| {
+        1e-9 * ((7919 * (ix + seed) + 104_729 * iy + 31 * ix * iy + seed) % 1009) as f64
+    };
+    let heights = DMatrix::from_fn(nx, ny, height);
+    let squares = (0..nx * ny).map(|node| {
+        let (ix, iy) = (node % nx, node / nx);
+        let steps = [heights[((ix + 1) % nx, iy)], heights[(ix, (iy + 1) % ny)]];
+        steps.map(|height| ((height - heights[(ix, iy)]) / 1e-5).powi(2)).iter().sum::<f64>()
+    });
+    let gradient = (squares.sum::<f64>() / (nx * ny) as f64).sqrt();
+    (HeightMap::new(heights).unwrap(), gradient)
+}
+
+/// Where all nodes have yielded none is out of contact: the interface is as stiff as on the path.
+#[test]
+fn behind_the_last_yield_the_interface_is_closed() {
+    let (surface, _) = white(4, 3, 0);
+    for kernel in kernels(Grid::new(4, 3, 1e-5, 1e-5).unwrap()) {
+        let history = path(&surface, &*kernel, 1e9);
+        let approach = 1.3 * history.states().last().unwrap().contact.approach;
+        let builder = FixedLoadSolver::builder(&surface, &*kernel).hardness(1e9).stiffness(true);
+        let mut solver = builder.build().unwrap();
+        let found = solver.solve_target(ContactTarget::Approach(approach)).unwrap().contact;
+        assert_eq!(found.interfacial_stiffness, Some(f64::INFINITY));
+        let expected = history.at_approach(approach).unwrap().contact;
+        assert_eq!(found.interfacial_stiffness, expected.interfacial_stiffness);
+        // And on from there.
+        let states = solver.sweep([1.0, 1.1].map(|part| ContactTarget::Approach(part * approach)));
+        assert!(states.map(Result::unwrap).all(|state| state.contact.load == found.load));
+    }
+}
+
+/// A periodic half-space that is in full contact before any node yields: its approach stays until one does. Just behind
+/// that an approach is found, and one of 10⁻¹² of the mean gap as exactly as any other.
+#[test]
+fn approaches_about_full_contact() {
+    for seed in 0..12 {
+        let (nx, ny) = (3 + seed % 5, 3 + seed % 7);
+        let (surface, gradient) = white(nx, ny, seed);
+        let [_, periodic @ ..] = kernels(Grid::new(nx, ny, 1e-5, 1e-5).unwrap());
+        for kernel in periodic {
+            for times in [5.0, 30.0] {
+                let hardness = times * gradient * E_STAR;
+                let history = path(&surface, &*kernel, hardness);
+                let open = history.states()[0].contact.mean_gap;
+                let builder = FixedLoadSolver::builder(&surface, &*kernel).hardness(hardness);
+                let mut solver = builder.tolerance(1e-10).build().unwrap();
+                let behind = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2].map(|part| open * (1.0 + part));
+                let before = [1e-12, 1e-10, 1e-8, 1e-4, 0.5].map(|part| open * part);
+                for approach in behind.into_iter().chain(before) {
+                    let expected = history.at_approach(approach).unwrap().contact;
+                    let found = solver.solve_target(ContactTarget::Approach(approach));
+                    let found = found.unwrap_or_else(|error| panic!("{seed} {approach:e} {error}"));
+                    let off = (found.contact.load / expected.load - 1.0).abs();
+                    // 1e-10 of the approach, by the stiffness of a few nodes; and by what is left of it at the first yield.
+                    let error = 1e-8 + 1e-8 * f64::from(u8::from(approach > open)) / 1e-2;
+                    assert!(off < error, "{seed} {times} {:e}: {off:e}", approach / open);
+                }
+            }
+        }
+    }
+}

@@ -304,6 +304,7 @@ fn nodes_that_touch_together_without_a_factor() {
         let history = path.run().unwrap();
         let open = seal.leak_at(&mut exact, &exact_history.states()[0]).unwrap().leak_rate;
         assert!(history.states().iter().any(|state| state.approach_error > 0.0));
+        assert_eq!(history.states().len(), exact_history.states().len());
         for (state, expected) in history.states().iter().zip(exact_history.states()) {
             let leak = seal.leak_at(&mut path, state).unwrap().leak_rate;
             let expected = seal.leak_at(&mut exact, expected).unwrap().leak_rate;

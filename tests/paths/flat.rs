@@ -94,6 +94,7 @@ fn stiffnesses_among_nodes_that_touch_at_once_are_those_of_the_factor() {
             let found = of(Box::new(ConjugateGradient::new()));
             let exact = of(Box::new(RecursiveCholesky::new()));
             let mut worst = [0.0_f64; 2];
+            assert_eq!(found.len(), exact.len());
             for (found, exact) in found.iter().zip(&exact) {
                 assert_eq!((found.step, found.node), (exact.step, exact.node), "{n} {name}");
                 let stiffnesses = |state: &LoadingState| {

@@ -119,9 +119,17 @@ fn behind_every_state_of_small_grids_with_a_hardness() {
         DMatrix::from_fn(nx, ny, |_, _| random.random_range(-1e-6..1e-6))
     };
     let terraces = rough(7, 8, 8).map(|height| if height > 0.0 { 1e-6 } else { 0.0 });
-    for (heights, hardness) in
-        [(rough(1, 6, 6), 1e8), (rough(4, 5, 8), 6e9), (rough(2, 7, 1), 2e9), (terraces, 1e9)]
-    {
+    // In the end of a window all of it has yielded.
+    let soft = DMatrix::from_fn(7, 5, |ix, iy| {
+        1e-9 * ((7919 * (ix + 2) + 104_729 * iy + 31 * ix * iy + 2) % 1009) as f64
+    });
+    for (heights, hardness) in [
+        (rough(1, 6, 6), 1e8),
+        (rough(4, 5, 8), 6e9),
+        (rough(2, 7, 1), 2e9),
+        (soft, 1e6),
+        (terraces, 1e9),
+    ] {
         let (nx, ny) = heights.shape();
         let grid = Grid::new(nx, ny, 1e-5, 1e-5).unwrap();
         let heights = HeightMap::new(heights).unwrap();

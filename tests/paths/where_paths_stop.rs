@@ -241,3 +241,39 @@ fn records_know_the_gauge() {
         }
     }
 }
+
+/// Where nodes that tie close the contact, rounding leaves no mean gap below 0, before which a path would end, and the
+/// path is a bed.
+#[test]
+fn ties_close_the_contact() {
+    use asperity::kernel::{Base, Layer, Layered, LayeredBody};
+    let (mut full, mut grown) = (0, 0);
+    for seed in 0..40 {
+        let grid = Grid::new(6, 7, 1.0, 1.0).unwrap();
+        // In steps, and the same from either side.
+        let step = |ix: usize, iy: usize| {
+            let height = (7919 * (ix + seed) + 104_729 * iy + 31 * ix * iy + 17 * seed) % 23;
+            height as f64 / 300.0
+        };
+        let mirrored = DMatrix::from_fn(6, 7, |ix, iy| step(ix, iy) + step(5 - ix, iy));
+        let surface = HeightMap::new(mirrored).unwrap();
+        let youngs_modulus = [10.0, 100.0, 1000.0][seed % 3];
+        let coat = Layer { youngs_modulus, poissons_ratio: 0.3, thickness: 0.2 };
+        let base = Base::HalfSpace { youngs_modulus: 1.0, poissons_ratio: 0.3 };
+        let kernel = Layered::periodic(grid, LayeredBody::new(&[coat], base).unwrap()).unwrap();
+        let builder =
+            || LoadingSolver::builder(&surface, &kernel).updater(ConjugateGradient::default());
+        let history = builder().build().unwrap().run().unwrap();
+        assert!(history.states().iter().all(|state| state.contact.mean_gap >= 0.0), "{seed}");
+        let mut path = builder().min_mean_gap(0.0).build().unwrap();
+        let closed = path.run().unwrap();
+        let nodes = |history: &History| history.states().last().unwrap().contact.contact_nodes;
+        assert_eq!(nodes(&closed), nodes(&history), "{seed}");
+        full += usize::from(nodes(&history) == 42);
+        if history.states().iter().all(|state| state.event == ContactEvent::Touch) {
+            grown += 1;
+            Bed::new(&history).unwrap();
+        }
+    }
+    assert!(full >= 20 && grown >= 10, "{full} {grown}");
+}

@@ -2,8 +2,12 @@
 
 use asperity::bed::Bed;
 use asperity::loading::History;
-use asperity::slip::{Friction, PartialSlip, SlipHistory};
-use asperity::{BedError, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, SlipError};
+use asperity::slip::{Friction, JenkinsElement, PartialSlip, SlipHistory};
+use asperity::updater::ConjugateGradient;
+use asperity::{
+    BedError, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
+    SlipError,
+};
 use asperity_testing::surfaces::rough;
 
 use crate::joints::rough_path;
@@ -172,4 +176,40 @@ fn paths_that_yield() {
         refused,
         Err(Error::Bed(BedError::NotElasticGrowth { happens: "yields", .. }))
     ));
+}
+
+/// In full contact of a periodic half-space nothing slips up to μ(P − P_full): a cycle there costs nothing, whatever
+/// errors the path has.
+#[test]
+fn nothing_slips_in_full_contact() {
+    let kernel = PeriodicBoussinesq::new(Grid::square(12, 1.0).unwrap(), 1.0).unwrap();
+    let surface = rough(&kernel.grid(), 1);
+    for factor in [true, false] {
+        let builder = LoadingSolver::builder(&surface, &kernel);
+        let history = match factor {
+            true => builder.build().unwrap().run().unwrap(),
+            false => builder.updater(ConjugateGradient::default()).build().unwrap().run().unwrap(),
+        };
+        let bed = Bed::new(&history).unwrap();
+        let load = 2.0 * bed.last_load();
+        let joint = PartialSlip::new(&bed, load, Friction::new(0.5, 1.0).unwrap()).unwrap();
+        for part in [0.1, 0.49] {
+            let cycle = joint.cycle(part * joint.sliding_load()).unwrap();
+            assert_eq!((cycle.dissipation, cycle.displacement), (0.0, 0.0));
+        }
+        let elements: Vec<_> = joint.jenkins_elements().collect();
+        let forces: f64 = elements.iter().map(|e| e.stiffness * e.slip_displacement).sum();
+        // μ P_full of μP; stiffnesses between the ends of windows are estimates without a factor.
+        let error = if factor { 1e-9 } else { 1e-6 };
+        let part = forces / joint.sliding_load();
+        assert!((part - 0.5).abs() < error, "factor {factor}: {part}");
+        let cycle = joint.cycle(joint.sliding_load()).unwrap();
+        let lost = |e: &JenkinsElement| {
+            4.0 * e.stiffness * e.slip_displacement * (cycle.displacement - e.slip_displacement)
+        };
+        let sum: f64 = elements.iter().map(lost).sum();
+        let of_last = 4.0 * 0.5 * joint.sliding_load() * cycle.displacement;
+        let part = (sum + of_last) / cycle.dissipation;
+        assert!((part - 1.0).abs() < error, "factor {factor}: {part}");
+    }
 }

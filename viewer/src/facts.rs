@@ -189,5 +189,6 @@ pub(crate) fn warnings(
         }
         warnings.extend(Warning::of_contact(pressure, &map, (&grid, kernel.boundary))?);
     }
-    Ok(warnings.iter().map(Warning::to_string).collect())
+    // The function of the library, which readers of a page need not know.
+    Ok(warnings.iter().map(|w| w.to_string().replace(" (`Topography::level`)", "")).collect())
 }

@@ -265,6 +265,23 @@ fn cells_wider_than_a_coat_are_warned_of() -> Result<(), Error> {
     Ok(())
 }
 
+/// A page names no function of the library.
+#[test]
+fn a_tilted_surface_is_told_without_rust() -> Result<(), Error> {
+    let kernel = Boussinesq::new(Grid::square(16, 1e-4)?, 115e9)?;
+    let tilted = HeightMap::new(asperity::nalgebra::DMatrix::from_fn(16, 16, |ix, iy| {
+        1e-6 * ix as f64 + 1e-8 * ((ix * iy) as f64).sin()
+    }))?;
+    let mut path = LoadingSolver::builder(&tilted, &kernel).max_area_fraction(0.1).build()?;
+    let history = path.run()?;
+    let record = LoadingRecord::new(&path, history)?;
+    let data = report::data(&page_of("tilted", &record)?);
+    let warnings = data["records"][0]["warnings"].to_string();
+    assert!(warnings.contains("level it unless the tilt is meant"), "{warnings}");
+    assert!(!warnings.contains('`'), "{warnings}");
+    Ok(())
+}
+
 /// On a kernel that cannot be made again there are no fields, and the page says why.
 #[test]
 fn without_a_kernel_there_are_no_fields() -> Result<(), Error> {

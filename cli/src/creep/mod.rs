@@ -77,7 +77,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         outcome.written(leaks.write(directory));
         leaks.draw(&passages, directory).into_iter().for_each(|drawn| outcome.written(drawn));
     }
-    if let Some(Ok(sweep)) = &sweep {
+    // Elastic bodies have no cycles.
+    if let Some(Ok(sweep)) = &sweep
+        && !sweep.cycles.is_empty()
+    {
         outcome.written(sweep.write(&directory.join("creep_cycles.csv")));
         outcome.written(sweep.draw(&directory.join("creep_cycles.png")));
     }

@@ -48,7 +48,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "SECONDS", value_parser = TIME.positive(), conflicts_with = "history")]
     pub(super) ramp: Option<f64>,
 
-    /// Time of the last state [default: the last line of --history, or 100 times the longest time of --prony]
+    /// Time of the last state [default: the last line of --history, or 100 times the longest time of the terms of
+    /// --prony that relax, behind the end of --ramp]
     #[arg(long, value_name = "SECONDS", value_parser = TIME.positive())]
     pub(super) time: Option<f64>,
 

@@ -78,12 +78,13 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
     }))
 }
 
-/// `None` on a free boundary, and for bodies that are no half-space.
+/// `None` on a free boundary, for bodies that are no half-space, and where nodes yield: the theory is elastic.
 fn persson(record: &LoadingRecord) -> Result<Option<AreaLoadLaw>, Error> {
     let (
         Boundary::Periodic,
         &(KernelOrigin::PeriodicBoussinesq { e_star } | KernelOrigin::Spectral { e_star }),
-    ) = (record.kernel().boundary, &record.kernel().origin)
+        None,
+    ) = (record.kernel().boundary, &record.kernel().origin, &record.settings().hardness)
     else {
         return Ok(None);
     };

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use asperity::record::LoadingRecord;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLUE, ORANGE};
+use asperity_cli::chart_format::{self, ChartFormat};
 use asperity_cli::number::counted;
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel::{Area, Drawn, Panel, anchor};
-use asperity_cli::picture::{FINE, draw_fine};
+use asperity_cli::picture::{FINE, draw_fine, draw_svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -34,19 +35,26 @@ pub(super) fn draw(
     let branches = followed.tree.branches();
     let tree = Tree { record, followed, leaves: rows(branches, MOST) };
     let height = ROW * tree.leaves.len() as i32;
-    let panel = Panel {
+    let panel = |text_rise| Panel {
         left: FINE * LEFT,
         top: FINE * TOP,
         width: FINE * (WIDTH - LEFT - 30),
         height: FINE * height,
         font: FINE * FONT,
         stroke: FINE as u32,
-        text_rise: 0.2,
+        text_rise,
     };
     let Some(ends) = tree.loads() else {
         return Err(Failure::request("there is no tree of mergers: no state carries load"));
     };
-    draw_fine(name, (WIDTH, TOP + height + 70), |area| tree.draw(area, &panel, ends))
+    let size = (WIDTH, TOP + height + 70);
+    match chart_format::chosen() {
+        Some(ChartFormat::Svg) => draw_svg(&name.with_extension("svg"), size, FINE, |area| {
+            area.fill(&WHITE)?;
+            tree.draw(area, &panel(0.0), ends)
+        }),
+        _ => draw_fine(name, size, |area| tree.draw(area, &panel(0.2), ends)),
+    }
 }
 
 struct Tree<'a> {

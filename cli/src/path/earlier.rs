@@ -12,7 +12,7 @@ const NAMES: [&str; 12] = [
     "fields.",
     "gap",
     "interface.",
-    "interrupted.",
+    "interrupted",
     "loading_curve.",
     "plastic_depth",
     "pressure",

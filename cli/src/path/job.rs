@@ -248,6 +248,21 @@ impl Job {
         self.record.as_deref()
     }
 
+    /// Where the record of a path that is interrupted goes: into its folder if nowhere else, beside records of other
+    /// surfaces.
+    pub(super) fn record_if_interrupted(&self, folder: &Path) -> PathBuf {
+        if let Some(record) = &self.record {
+            return record.clone();
+        }
+        let mut place = folder.join("interrupted.npz");
+        let mut number = 1;
+        while check_kept(Some(&place), &self.surface).is_err() {
+            number += 1;
+            place = folder.join(format!("interrupted_{number}.npz"));
+        }
+        place
+    }
+
     /// Everything that determines the path.
     pub(super) fn settings(&self) -> &Settings {
         &self.settings

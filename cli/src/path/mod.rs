@@ -205,12 +205,11 @@ fn follow_one(
         return Err(interrupt::of_one_of_many());
     }
     if is_interrupted {
-        let place = options.out.join("interrupted.npz");
-        let name = job.record().unwrap_or(&place);
-        outcome.written(save(name, &job, &solver, &states, &[]));
+        let name = job.record_if_interrupted(&options.out);
+        outcome.written(save(&name, &job, &solver, &states, &[]));
         outcome.written(file.finish(is_whole));
         outcome.finish()?;
-        return Err(interrupted(given, name, states.len()));
+        return Err(interrupted(given, &name, states.len()));
     }
     // First without the fields, which take time and memory.
     let record = job.record();

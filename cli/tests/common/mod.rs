@@ -32,6 +32,13 @@ impl Drop for Scratch {
     }
 }
 
+/// A folder with a surface of 48 × 48 nodes.
+pub fn with_surface(name: &str) -> std::io::Result<Scratch> {
+    let folder = Scratch::new(name)?;
+    fs::copy(data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    Ok(folder)
+}
+
 /// A file among the data of the library's tests.
 pub fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name)
@@ -82,6 +89,11 @@ pub fn limited(folder: &Path, limit: &str, arguments: &[&OsStr]) -> std::io::Res
         .arg(env!("CARGO_BIN_EXE_asperity"))
         .args(arguments)
         .output()
+}
+
+/// What a program printed.
+pub fn printed(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
 /// What a program said on stderr.

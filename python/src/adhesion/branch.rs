@@ -3,13 +3,12 @@
 use asperity::adhesion as engine;
 use asperity::adhesion::AdhesiveEvent;
 use numpy::{Element, PyArray1};
-use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 use crate::arrays::column;
 use crate::errors::{Failure, Fallible};
-use crate::history::iterated;
+use crate::history::{iterated, state_at};
 
 /// States are pickled as a branch of one.
 fn pickled<'py>(
@@ -306,13 +305,8 @@ impl AdhesiveBranch {
         iterated(slf, slf.get().branch.states().len())
     }
 
-    fn __getitem__(&self, index: isize) -> PyResult<AdhesiveState> {
-        let states = self.branch.states();
-        let place =
-            if index < 0 { states.len().checked_add_signed(index) } else { Some(index as usize) };
-        let state = place.and_then(|place| states.get(place));
-        let missing = || PyIndexError::new_err(format!("there are {} states", states.len()));
-        Ok(AdhesiveState { state: *state.ok_or_else(missing)? })
+    fn __getitem__(&self, index: &Bound<'_, PyAny>) -> PyResult<AdhesiveState> {
+        Ok(AdhesiveState { state: *state_at(self.branch.states(), index)? })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyTuple>> {

@@ -210,7 +210,8 @@ impl Creep {
     /// Raises
     /// ------
     /// AsperityError
-    ///     Of the kind ``"ContactRecedes"`` behind `recession`, and ``"PathEnds"`` if the path does not reach as far.
+    ///     Of the kind ``"ContactRecedes"`` behind `recession`, and ``"PathEnds"``, of an approach ``"PathEndsBefore"``,
+    ///     if the path does not reach as far.
     fn at<'py>(&self, py: Python<'py>, times: &Bound<'py, PyAny>) -> Fallible<Bound<'py, PyDict>> {
         let times = Found::of(times, "times", Kind::Real)?.list()?;
         let states = self.grown(py, |grown| {

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use asperity::contact::Certificate;
-use asperity::loading::LoadingEnd;
+use asperity::loading::{self, LoadingEnd};
 use asperity::nalgebra::DMatrix;
 use asperity::patches::constriction;
 use asperity::record::LoadingRecord;
@@ -24,7 +24,7 @@ pub(crate) type Engine = asperity::LoadingPath;
 use self::inner::Inner;
 use crate::arrays::{column, rows, shape};
 use crate::choice;
-use crate::compute::detached;
+use crate::compute::{detached, interruptible_with};
 use crate::errors::{Failure, Fallible};
 use crate::history::{History, Setting, check_on_path};
 use crate::results::result;
@@ -48,7 +48,7 @@ const STRETCH: Duration = Duration::from_millis(50);
 /// windows of events, nothing is lost, and the path goes on where it was.
 #[pyclass(frozen, module = "asperity")]
 pub(crate) struct LoadingPath {
-    inner: Mutex<Inner>,
+    inner: Arc<Mutex<Inner>>,
     setting: Setting,
     e_star: Option<f64>,
 }
@@ -61,7 +61,7 @@ impl LoadingPath {
             boundary: engine.problem().boundary(),
             has_hardness: engine.hardness_map().is_some(),
         };
-        Self { inner: Mutex::new(inner), setting, e_star }
+        Self { inner: Arc::new(Mutex::new(inner)), setting, e_star }
     }
 
     /// The path, for as long as nobody else uses it. No function of Python may be called meanwhile: it might ask for it too.
@@ -121,16 +121,29 @@ impl LoadingPath {
         Ok(detached(py, || compute(engine))??)
     }
 
-    /// What the engine computes with the record of the states so far, without the lock of the interpreter.
-    pub(crate) fn with_record<T: Send>(
+    /// What the engine computes of many of the states so far: Ctrl-C ends the wait, and the path is free again when
+    /// what is under way is done.
+    pub(crate) fn interruptible<T: Send + 'static>(
         &self,
         py: Python<'_>,
-        compute: impl FnOnce(&mut Engine, &LoadingRecord) -> Result<T, Error> + Send,
+        compute: impl FnOnce(&mut Engine, &loading::History) -> Result<T, Error> + Send + 'static,
     ) -> Fallible<T> {
-        let mut inner = self.lock(py);
-        let record = inner.record()?;
-        let engine = inner.engine_mut();
-        Ok(detached(py, || compute(engine, &record))??)
+        Ok(interruptible_with(py, &self.inner, |inner| {
+            let history = Arc::clone(&inner.history);
+            compute(inner.engine_mut(), &history)
+        })??)
+    }
+
+    /// The same with the record of the states so far.
+    pub(crate) fn with_record<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        compute: impl FnOnce(&mut Engine, &LoadingRecord) -> Result<T, Error> + Send + 'static,
+    ) -> Fallible<T> {
+        Ok(interruptible_with(py, &self.inner, |inner| {
+            let record = inner.record()?;
+            compute(inner.engine_mut(), &record)
+        })??)
     }
 
     /// What the engine computes at a state, without the lock of the interpreter.

@@ -15,7 +15,7 @@ pub use body::{Base, Layer, LayeredBody};
 
 use super::gauge::{convex, of_coefficients};
 use super::periodic::{Even, least_gauge};
-use super::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin, MeanDisplacement};
+use super::{Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid};
 
 /// A [`LayeredBody`] under the cells of a grid.
@@ -39,12 +39,12 @@ use crate::{Error, Grid};
 /// it is a sum over all waves that look alike on the grid, for thin layers with the shortest of them replaced by
 /// integrals over cells.
 ///
-/// Coefficients err by some 10⁻¹⁴ of C(0, 0), and the symbol of cells of a side Δ by some 10⁻¹⁵ Δ/E₁\*, however little
-/// is left of it: on a rigid base it is a difference of the two parts. Of a thin compressible layer some h/E₁ is left.
-/// A thin incompressible one, under a uniform pressure on a cell, moves at the edges of the cell only, and the symbol
-/// falls exponentially with Δ/h: on 12 nodes in a row that of the longest wave is 1.8 × 10⁻⁴ Δ/E₁ for h = 0.1 Δ, 2.2 ×
-/// 10⁻⁶ for 0.05 Δ, 1.4 × 10⁻¹¹ for 0.02 Δ and 10⁻¹⁸ for 0.011 Δ. Where an incompressible layer is thinner than 0.05
-/// cells, use [`spectral`](Self::spectral), which takes no difference.
+/// Coefficients err by some 10⁻¹⁴ of C(0, 0), those with a free boundary also by 10⁻¹⁵ Δ/E₁\*, and the symbol of cells
+/// of a side Δ by some 10⁻¹⁵ Δ/E₁\*, however little is left of it: on a rigid base it is a difference of the two parts.
+/// Of a thin compressible layer some h/E₁ is left. A thin incompressible one, under a uniform pressure on a cell, moves
+/// at the edges of the cell only, and the symbol falls exponentially with Δ/h: on 12 nodes in a row that of the longest
+/// wave is 1.8 × 10⁻⁴ Δ/E₁ for h = 0.1 Δ, 2.2 × 10⁻⁶ for 0.05 Δ, 1.4 × 10⁻¹¹ for 0.02 Δ and 10⁻¹⁸ for 0.011 Δ. Where an
+/// incompressible layer is thinner than 0.05 cells, use [`spectral`](Self::spectral), which takes no difference.
 ///
 /// # Mean displacement
 ///
@@ -120,16 +120,28 @@ const THICK: f64 = 1.5;
 /// A mean compliance is nothing below so much of the greatest value of the symbol: twice what a convolution takes for
 /// rounding, so that none is refused for its own.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// With a free boundary C(0, 0) of less than so much of that of a half-space of the uppermost layer has not even four
+/// digits.
+const LEAST_OF_HALF_SPACE: f64 = 1e-11;
 
 impl Layered {
     /// With a free boundary.
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] and [`Error::OutOfRange`] for moduli, thicknesses and cells that are too far apart.
+    /// [`Error::NotPositive`] and [`Error::OutOfRange`] for moduli, thicknesses and cells that are too far apart, and for
+    /// layers so much thinner than the cells that rounding is left of their coefficients.
     pub fn free(grid: Grid, body: LayeredBody) -> Result<Self, Error> {
         check_scales(&grid, &body)?;
         let values = free::coefficients(&grid, &body)?;
+        let half_space = Boussinesq::new(grid, body.top_modulus())?;
+        let part = values[0] / half_space.coefficient(0, 0);
+        Error::require(
+            "displacement of a cell by its own pressure, over that of a half-space of the uppermost layer",
+            part,
+            part >= LEAST_OF_HALF_SPACE,
+            "1e-11 or more: less is rounding",
+        )?;
         let grows = growth::is_soft(&grid, &body) || free_contact_grows(&grid, &body, &values)?;
         let growth = if grows { ContactGrowth::Monotone } else { ContactGrowth::Unknown };
         let coefficients = Coefficients::Free(values);

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use super::KernelRecord;
 use crate::adhesion::{
-    Adhesion, AdhesiveBranch, AdhesiveBuilder, AdhesivePath, AdhesiveState, Trace,
+    Adhesion, AdhesiveBranch, AdhesiveBuilder, AdhesivePath, AdhesiveState, Direction, Trace,
 };
 use crate::surface::HeightMap;
 use crate::{ContactTarget, Error, Grid, InfluenceKernel, KernelTable};
@@ -48,8 +48,8 @@ pub struct AdhesiveRecord {
     adhesion: Adhesion,
     states: AdhesiveBranch,
     trace: Trace,
-    /// Where the last branch is to end, if it has not.
-    pending: Option<Vec<ContactTarget>>,
+    /// Which way the last branch goes and where it is to end, if it has not come there.
+    pending: Option<(Direction, Vec<ContactTarget>)>,
 }
 
 impl AdhesiveRecord {
@@ -80,7 +80,7 @@ impl AdhesiveRecord {
             kernel: KernelRecord::of(problem.table()),
             adhesion: path.adhesion(),
             trace: path.trace(),
-            pending: path.pending().map(<[_]>::to_vec),
+            pending: path.pending().map(|(direction, targets)| (direction, targets.to_vec())),
             states,
         }
         .checked()
@@ -96,7 +96,9 @@ impl AdhesiveRecord {
             let (expected, found) = (self.trace.marks.len(), states.len());
             return Err(Error::LengthMismatch { expected, found });
         }
-        self.trace.follow(self.grid.nodes(), |place, counts| check(&states[place], counts))?;
+        self.trace.follow(self.grid.nodes(), |place, counts| {
+            check(&states[place], self.trace.marks[place].1, counts)
+        })?;
         Ok(self)
     }
 
@@ -166,19 +168,25 @@ impl AdhesiveRecord {
         let builder = memory_budget.into_iter().fold(builder, AdhesiveBuilder::memory_budget);
         let last = self.states.states().last();
         // Targets of a branch of unloading are none from where the surfaces are apart.
-        let targets = self.pending.iter().flatten().filter(|_| last.is_none()).copied();
+        let pending = self.pending.as_ref().map(|(direction, targets)| (*direction, &targets[..]));
+        let targets = pending.iter().flat_map(|(_, targets)| *targets);
+        let targets = targets.filter(|_| last.is_none()).copied();
         let builder = targets.fold(builder, AdhesiveBuilder::until);
         let mut path = builder.build()?;
         self.kernel.check(path.problem().table())?;
         if let Some(last) = last {
-            path.restore(self.trace.clone(), *last, self.pending.as_deref())?;
+            path.restore(self.trace.clone(), *last, pending)?;
         }
         Ok(path)
     }
 }
 
-/// `Ok` if what a state says of its nodes and of its energies is so.
-fn check(state: &AdhesiveState, [soft, cohesive, in_contact]: [usize; 3]) -> Result<(), Error> {
+/// `Ok` if what a state, at an approach in the gauge of the kernel, says of its nodes and of its energies is so.
+fn check(
+    state: &AdhesiveState,
+    in_gauge: f64,
+    [soft, cohesive, in_contact]: [usize; 3],
+) -> Result<(), Error> {
     let contact = &state.contact;
     let energies = [contact.energy, state.adhesive_energy, state.dissipated, state.work];
     if !contact.is_finite() || energies.iter().any(|energy| !energy.is_finite()) {
@@ -198,7 +206,9 @@ fn check(state: &AdhesiveState, [soft, cohesive, in_contact]: [usize; 3]) -> Res
         }
     }
     let [elastic, adhesive, dissipated, work] = energies;
-    let unit = energies.iter().fold(0.0, |most: f64, energy| most.max(energy.abs()));
+    // Energies about the mean planes are differences of those in the gauge.
+    let unit = (contact.load * in_gauge).abs();
+    let unit = energies.iter().fold(unit, |most: f64, energy| most.max(energy.abs()));
     let sum = elastic + adhesive + dissipated;
     if (work - sum).abs() > SAME * unit {
         return wrong("work", work, sum, "is the sum of the energies");

@@ -39,6 +39,9 @@ struct Parameters {
     /// Where the last branch is to end, if it has not; records of before have ended.
     #[serde(default)]
     pending: Option<Vec<ContactTarget>>,
+    /// Which way it goes; if records of before do not say, as its last state.
+    #[serde(default)]
+    pending_branch: Option<Direction>,
     units: String,
 }
 
@@ -160,7 +163,8 @@ impl AdhesiveRecord {
             cell: (self.grid.dx(), self.grid.dy()),
             kernel: self.kernel.clone(),
             adhesion: self.adhesion,
-            pending: self.pending.clone(),
+            pending: self.pending.as_ref().map(|(_, targets)| targets.clone()),
+            pending_branch: self.pending.as_ref().map(|(direction, _)| *direction),
             units: UNITS.to_string(),
         }
     }
@@ -244,12 +248,14 @@ impl AdhesiveRecord {
         }
         let approaches = archive.vector("approach_in_gauge", length)?;
         let marks = wholes("changes", length)?.into_iter().zip(approaches).collect();
+        let last = states.last().map_or(Direction::Loading, |state| state.direction);
+        let direction = parameters.pending_branch.unwrap_or(last);
         Self {
             grid,
             heights: HeightMap::new(archive.matrix("heights")?)?,
             kernel: parameters.kernel,
             adhesion: parameters.adhesion,
-            pending: parameters.pending,
+            pending: parameters.pending.map(|targets| (direction, targets)),
             states: states.into_iter().collect(),
             trace: Trace { changes, marks },
         }

@@ -11,7 +11,7 @@ use super::format::{Besides, Format, not_read};
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
 use super::text::TextLayout;
-use super::unit::LengthUnit;
+use super::unit::{LengthUnit, with_factor};
 use crate::number::{counted, quantity};
 use crate::{Error, FileError};
 
@@ -101,6 +101,9 @@ impl ReadOptions {
     }
 
     /// The unit of the numbers in the file, in place of the one that it names.
+    ///
+    /// A factor that a text gives belongs to its unit, and is left out with it. The scale of a file that is no text
+    /// stays: it makes heights of what is stored.
     pub fn height_unit(mut self, unit: LengthUnit) -> Self {
         self.height_unit = Some(unit);
         self
@@ -202,7 +205,11 @@ impl ReadOptions {
         let mut replaced = Vec::new();
         // NumPy's metre is an assumption, see below.
         let stated = unit.as_deref().filter(|_| format != Format::Npy);
-        replaced.extend(replacement("heights", self.height_unit, stated));
+        let stated = stated.map(|unit| with_factor(channel.factor, unit));
+        replaced.extend(replacement("heights", self.height_unit, stated.as_deref()));
+        if self.height_unit.is_none() {
+            channel.values.iter_mut().for_each(|value| *value *= channel.factor);
+        }
         let height = metres(self.height_unit, unit).map_err(|found| {
             let (path, option) = (path.to_path_buf(), "`ReadOptions::height_unit`");
             FileError::NoUnit { path, quantity: "heights", found, option }

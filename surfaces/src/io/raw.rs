@@ -15,6 +15,8 @@ pub(super) struct Channel {
     pub(super) values: Vec<f64>,
     /// Unit of the values as the file writes it, `None` where it has none.
     pub(super) height_unit: Option<String>,
+    /// What the values have to be multiplied by to be in that unit.
+    pub(super) factor: f64,
     /// Cell along x and y.
     pub(super) cell: Option<(f64, f64)>,
     /// Unit of the cell as the file writes it, `None` where it has none.
@@ -39,6 +41,7 @@ impl Channel {
             shape,
             values,
             height_unit: Some("m".to_string()),
+            factor: 1.0,
             cell,
             lateral_unit: Some("m".to_string()),
             mask: None,

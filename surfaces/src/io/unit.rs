@@ -71,6 +71,11 @@ impl LengthUnit {
     }
 }
 
+/// A unit as a file gives it, behind what its numbers are multiplied by.
+pub(super) fn with_factor(factor: f64, unit: &str) -> String {
+    if factor == 1.0 { unit.to_string() } else { format!("{factor:?} {unit}") }
+}
+
 impl FromStr for LengthUnit {
     type Err = Error;
 

@@ -142,11 +142,10 @@ pub(super) fn follow(
         return Err(interrupt::of_one_of_many());
     }
     if is_interrupted {
-        let place = options.out.join("interrupted.npz");
-        let name = job.record().unwrap_or(&place);
-        outcome.written(followed.save(name, &[]));
+        let name = job.record_if_interrupted(&options.out);
+        outcome.written(followed.save(&name, &[]));
         outcome.finish()?;
-        return Err(interrupted(given, name, followed.states.len()));
+        return Err(interrupted(given, &name, followed.states.len()));
     }
     let mut kept = job.record().map(|name| followed.save(name, &[]));
     let pressed = followed.pressed();

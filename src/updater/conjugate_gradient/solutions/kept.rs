@@ -169,9 +169,11 @@ impl Solutions {
             };
             let fields = [of(a)?, of(b)?, of(c)?];
             // Of a few elastic nodes in contact a field is nearly nothing, and what it was solved for is not, or the other way
-            // round.
+            // round. The sums of rows beside nodes that have yielded are what is left of those of all.
             let [unit, load] = &beside.under;
-            for (field, rhs) in fields.iter().zip([problem.row_sums(), unit, load]) {
+            let all = problem.row_sums().iter().zip(unit);
+            let all: Vec<f64> = all.map(|(sum, unit)| sum.abs() + unit.abs()).collect();
+            for (field, rhs) in fields.iter().zip([&all, unit, load]) {
                 let own = &field.displacement;
                 let most = greatest(own.len(), 0.0, |i| own[i].abs());
                 let most = greatest(rhs.len(), most, |i| rhs[i].abs());

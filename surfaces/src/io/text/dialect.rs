@@ -11,9 +11,7 @@ use crate::io::lines::{Line, Lines};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Dialect {
     pub(super) separator: Option<u8>,
-    decimal_comma: bool,
-    /// Whether there is a decimal point, or a point that parts thousands.
-    pub(super) has_points: bool,
+    pub(super) decimal_comma: bool,
     /// Whether every line is digits, a comma, digits: a decimal comma would look the same.
     pub(super) has_one_comma: bool,
     /// Why commas between numbers could be decimal, if anything says so.
@@ -25,13 +23,8 @@ const LONGEST: usize = 128;
 
 impl Dialect {
     /// Numbers with decimal points between blanks.
-    pub(super) const BLANKS: Self = Self {
-        separator: None,
-        decimal_comma: false,
-        has_points: false,
-        has_one_comma: false,
-        doubt: None,
-    };
+    pub(super) const BLANKS: Self =
+        Self { separator: None, decimal_comma: false, has_one_comma: false, doubt: None };
 
     /// The dialect of the lines of numbers in a file.
     pub(super) fn of(lines: &Lines) -> Self {
@@ -55,8 +48,7 @@ impl Dialect {
                 .map(|line| line.bytes)
                 .filter(|line| !line.trim_ascii().is_empty())
                 .all(is_one_comma);
-        let has_points = has(b'.');
-        let doubt = if separator != Some(b',') || has_points {
+        let doubt = if separator != Some(b',') || has(b'.') {
             None
         } else if rows().any(|line| line.bytes.split(|byte| *byte == b',').any(begins_with_zero)) {
             Some("numbers parted by commas begin with zeros, as what follows a decimal comma does")
@@ -65,7 +57,7 @@ impl Dialect {
         } else {
             None
         };
-        Self { separator, decimal_comma, has_points, has_one_comma, doubt }
+        Self { separator, decimal_comma, has_one_comma, doubt }
     }
 
     /// How a text is written.

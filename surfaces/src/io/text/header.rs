@@ -2,7 +2,7 @@
 
 use super::{markers, words};
 use crate::io::fault::Fault;
-use crate::io::unit::LengthUnit;
+use crate::io::unit::{LengthUnit, with_factor};
 
 /// What the header says.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -19,7 +19,7 @@ pub(super) struct Header {
     pub(super) value_unit: Option<String>,
     /// What the numbers have to be multiplied by to be in their unit.
     pub(super) factor: Option<f64>,
-    /// Whether that and the unit come from a line that any line with a unit overrules.
+    /// Whether that and the unit come from a line that any line with a unit overrules; no other factor is overruled.
     is_bit2nm: bool,
     /// Unit of the coordinates of points.
     pub(super) lateral_unit: Option<String>,
@@ -147,10 +147,7 @@ impl Header {
             self.height = self.length(value);
             is_read = self.height.is_some();
         } else if is(VALUE_UNIT) || is(DATA_UNIT) {
-            self.value_unit = some(value);
-            if std::mem::take(&mut self.is_bit2nm) {
-                self.factor = None;
-            }
+            self.set_value_unit(some(value));
         } else if is(SIDE_UNIT) {
             self.side_unit = some(value);
         } else if is(COLUMNS) {
@@ -169,7 +166,7 @@ impl Header {
             is_read = self.pixel_y.is_some();
         } else if is("z amplitude") {
             // WSxM gives the range of heights; its unit is that of them all.
-            self.value_unit = Length::parse(value).and_then(|range| range.unit);
+            self.set_value_unit(Length::parse(value).and_then(|range| range.unit));
         } else if is("file format") && value.eq_ignore_ascii_case("ascii") {
             // SPIP has lengths in nm.
             self.side_unit.get_or_insert_with(|| "nm".to_string());
@@ -181,6 +178,7 @@ impl Header {
                 self.value_unit = some("nm");
             }
         } else if let Some(unit) = key.strip_prefix("height conversion factor (->") {
+            self.is_bit2nm = false;
             self.factor = Some(self.factor_of(&key, value)?);
             self.value_unit = some(unit.trim_end_matches(')'));
         } else {
@@ -189,12 +187,23 @@ impl Header {
         Ok(Some(is_read))
     }
 
+    /// The unit of a line without a factor.
+    fn set_value_unit(&mut self, unit: Option<String>) {
+        let is_open = self.factor.is_none() || self.is_bit2nm;
+        if is_open && unit.is_some() {
+            (self.value_unit, self.factor, self.is_bit2nm) = (unit, None, false);
+        }
+    }
+
     /// The header of a grid of geographers: lines without a sign between key and value.
     fn add_word(&mut self, key: &str, value: &str) -> bool {
         let key = key.to_ascii_lowercase();
         match key.as_str() {
             "nodata_value" => self.missing = number(value),
-            "cellsize" => self.pixel = self.length(value),
+            "cellsize" => {
+                self.pixel = self.length(value);
+                return self.pixel.is_some();
+            }
             "ncols" => self.columns = value.parse().ok(),
             "nrows" => self.rows = value.parse().ok(),
             _ => return false,
@@ -225,15 +234,29 @@ impl Header {
         }
     }
 
-    /// Makes heights in their unit, NaN where they are missing, of the numbers in the file.
-    pub(super) fn apply(&self, numbers: &mut [f64], notes: &mut Vec<String>) {
+    /// The units of x and of heights: those in names of columns, which must not contradict these lines, or theirs.
+    pub(super) fn units(&self, [x, z]: [Option<&String>; 2]) -> Result<[Option<String>; 2], Fault> {
+        let of_x = self.lateral_unit.as_ref().or(self.side_unit.as_ref());
+        let of_z = self.value_unit.as_ref();
+        let told = of_z.map(|unit| with_factor(self.factor.unwrap_or(1.0), unit));
+        for (of, name, head) in [("heights", z, told.as_ref()), ("x", x, of_x)] {
+            if let (Some(name), Some(head)) = (name, head) {
+                ensure!(
+                    ratio(Some(name), Some(head)) == Some(1.0),
+                    "of {of}, the name of the column says '{name}', but the header '{head}'"
+                );
+            }
+        }
+        Ok([x.or(of_x).cloned(), z.or(of_z).cloned()])
+    }
+
+    /// Makes NaN of the numbers that stand for missing heights.
+    pub(super) fn remove_marks(&self, numbers: &mut [f64], notes: &mut Vec<String>) {
         if let Some(missing) = self.missing {
             let is_mark = |number: f64| (number - missing).abs() <= SAME_MARK * missing.abs();
             numbers.iter_mut().filter(|number| is_mark(**number)).for_each(|n| *n = f64::NAN);
         }
         notes.append(&mut markers::remove(numbers));
-        let factor = self.factor.unwrap_or(1.0);
-        numbers.iter_mut().for_each(|number| *number *= factor);
     }
 
     /// Whether it says that there is a matrix: it gives sides, or numbers of columns and rows.
@@ -371,7 +394,7 @@ impl Length {
 
 /// Whether a text begins with digits, a comma and three digits, as thousands are parted: a decimal comma looks the
 /// same, unless 0 is before it.
-fn may_part_thousands(text: &str) -> bool {
+pub(super) fn may_part_thousands(text: &str) -> bool {
     let Some((before, after)) = text.split_once(',') else {
         return false;
     };

@@ -34,7 +34,7 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
     let told = table.told();
     let mut values = table.values;
     notes.extend(header.lone_side());
-    header.apply(&mut values, &mut notes);
+    header.remove_marks(&mut values, &mut notes);
     Ok(Channel {
         height_unit: header.value_unit.clone(),
         lateral_unit,

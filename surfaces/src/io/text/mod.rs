@@ -62,7 +62,7 @@ pub(super) fn parse(file: &[u8], path: &Path, layout: Option<TextLayout>) -> Par
     ensure!(!is_utf16(file), "it is encoded as UTF-16: save it as UTF-8");
     let mark = "\u{feff}".as_bytes();
     let skipped = if file.starts_with(mark) { mark.len() } else { 0 };
-    let text = quotes::removed(file);
+    let (text, commas) = quotes::removed(file);
     let lines = Lines::new(&text, skipped);
     let begins = |with: &[u8]| lines.rest().starts_with(with);
     ensure!(
@@ -76,10 +76,12 @@ pub(super) fn parse(file: &[u8], path: &Path, layout: Option<TextLayout>) -> Par
         return laid_out(zygo::parse(lines)?, layout);
     }
     let (header, table) = table::read(lines)?;
+    commas.check(&table)?;
     let is_xyz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xyz"));
     let channel = generic(&header, table, is_xyz, layout)?;
     let understood = channel.understood + &header.unread();
-    Ok(vec![Channel { name: header.title, understood, ..channel }])
+    let factor = header.factor.unwrap_or(1.0);
+    Ok(vec![Channel { name: header.title, factor, understood, ..channel }])
 }
 
 /// The maps of a text of known layout, with what is said of another one.
@@ -155,21 +157,12 @@ fn list(header: &Header, list: List, table: &Table) -> Result<Channel, Fault> {
     let (columns, map) = *list;
     let mut channel = map.channel()?;
     let [x, y, z] = &columns.units;
-    for (of, name, head) in [("heights", z, &header.value_unit), ("x", x, &header.lateral_unit)] {
-        if let (Some(name), Some(head)) = (name, head) {
-            ensure!(
-                name == head,
-                "of {of}, the name of the column says '{name}', but the header '{head}'"
-            );
-        }
-    }
-    channel.height_unit = z.clone().or_else(|| header.value_unit.clone());
-    channel.lateral_unit = header.lateral_unit.clone();
+    [channel.lateral_unit, channel.height_unit] = header.units([x.as_ref(), z.as_ref()])?;
     if x.is_some() || y.is_some() {
         // Coordinates in two units have none in common, unless both are lengths.
         let ratio = header::ratio(y.as_ref(), x.as_ref());
         channel.cell = channel.cell.map(|(dx, dy)| (dx, dy * ratio.unwrap_or(1.0)));
-        channel.lateral_unit = x.clone().filter(|_| ratio.is_some());
+        channel.lateral_unit = channel.lateral_unit.filter(|_| ratio.is_some());
     }
     if table.columns > 3 {
         let [x, y, z] = [columns.x, columns.y, columns.z].map(|column| column + 1);
@@ -177,7 +170,7 @@ fn list(header: &Header, list: List, table: &Table) -> Result<Channel, Fault> {
             .notes
             .push(format!("of {} columns {x}, {y} and {z} are read, as x, y, z", table.columns));
     }
-    header.apply(&mut channel.values, &mut channel.notes);
+    header.remove_marks(&mut channel.values, &mut channel.notes);
     Ok(channel)
 }
 

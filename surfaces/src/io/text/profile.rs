@@ -15,6 +15,7 @@ pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
     let shape = shape(count as u64, 1)?;
     let named = names::of_profile(header, &table).unwrap_or_default();
     let OfProfile { units: [of_x, of_z], is_turned } = named;
+    let [lateral_unit, height_unit] = header.units([of_x.as_ref(), of_z.as_ref()])?;
     let told = table.told();
     let mut notes = Vec::new();
     let (mut values, positions) = match table.columns {
@@ -27,7 +28,7 @@ pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
         }
         _ => (table.values, None),
     };
-    header.apply(&mut values, &mut notes);
+    header.remove_marks(&mut values, &mut notes);
     let of_map = header.of_map();
     notes.extend(of_map.map(|line| {
         format!("'{line}' is a line of maps, but names say that the columns are a profile")
@@ -44,10 +45,8 @@ pub(super) fn channel(header: &Header, table: Table) -> Result<Channel, Fault> {
         (Some(_), true) => "a height and a position",
     };
     Ok(Channel {
-        height_unit: of_z.or_else(|| header.value_unit.clone()),
-        lateral_unit: of_x
-            .or_else(|| header.lateral_unit.clone())
-            .or_else(|| header.side_unit.clone()),
+        height_unit,
+        lateral_unit,
         understood: format!(
             "a profile of {}, {of_what} in each row, {told}",
             counted(count, "point")

@@ -195,10 +195,11 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
             if let Some(line) = unknown {
                 table.check_above(&line)?;
             }
-            if let Some(number) = header.doubtful.as_ref().filter(|_| table.dialect.has_points) {
+            if let Some(number) = header.doubtful.as_ref().filter(|_| !table.dialect.decimal_comma)
+            {
                 bail!(
                     "the header has '{number}', whose comma parts thousands or is a decimal one, while the numbers \
-                     below have decimal points: write it with a point, or without the comma"
+                     below have no decimal commas: write it with a point, or without the comma"
                 );
             }
             return Ok((header, table));

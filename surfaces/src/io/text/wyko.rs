@@ -15,9 +15,6 @@ use crate::io::raw::{Channel, Parsed};
 
 pub(super) const BEGINS: &[u8] = b"Wyko ASCII Data File";
 
-/// nm and mm in µm.
-const NANOMETRE: f64 = 1e-3;
-
 pub(super) fn parse(mut lines: Lines) -> Parsed {
     let mut blocks: HashMap<String, String> = HashMap::new();
     // The second of three flags: heights are in nm.
@@ -63,9 +60,6 @@ pub(super) fn parse(mut lines: Lines) -> Parsed {
     }
     let wave = number("Wavelength")?.zip(number("Mult")?).map(|(wave, mult)| wave / mult);
     let unit = if is_in_nm { Some(1.0) } else { wave };
-    if let Some(unit) = unit {
-        values.iter_mut().for_each(|value| *value *= unit * NANOMETRE);
-    }
     let pixel = number("Pixel_size")?;
     let aspect = number("Aspect")?.unwrap_or(1.0);
     let of_waves = unit.filter(|_| !is_in_nm).map(|unit| format!(" of {unit} nm"));
@@ -73,7 +67,8 @@ pub(super) fn parse(mut lines: Lines) -> Parsed {
         if is_in_nm { "nm".to_string() } else { format!("waves{}", of_waves.unwrap_or_default()) };
     let channel = Channel {
         name: value("Title").cloned().unwrap_or_default(),
-        height_unit: Some(if unit.is_some() { "um" } else { "waves" }.to_string()),
+        height_unit: Some(if unit.is_some() { "nm" } else { "waves" }.to_string()),
+        factor: unit.unwrap_or(1.0),
         lateral_unit: Some("mm".to_string()),
         understood: format!(
             "Wyko's text: {nx} lines along x of {ny} heights along y, in {heights}"

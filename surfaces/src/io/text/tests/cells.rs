@@ -138,5 +138,11 @@ fn quotes_change_no_decimal_sign() -> TestResult {
     let mixed = "\"1,5\";2,5;3,25;4\n5;6;\"7,25\";8\n";
     assert_eq!(numbers(mixed)?.1, [1.5, 2.5, 3.25, 4.0, 5.0, 6.0, 7.25, 8.0]);
     assert_refused("\"1,5\";2.5;3,25;4\n5;6;7;8\n", "line 1 has a decimal point");
+    // Behind a comma that may part thousands all numbers have three digits, or one has others.
+    for text in ["987.5,\"1,023\",998.25\n", "987,\"1,023\",\"998\"\n"] {
+        assert_refused(text, "the comma of '1,023' in quotes parts thousands or is a decimal one");
+    }
+    assert_eq!(numbers("\"1,023\",NaN,\"-12,125\"\n")?.1, [1.023, MISSING, -12.125]);
+    assert_eq!(numbers("\"1,023\",7,\"0,125\"\n")?.1, [1.023, 7.0, 0.125]);
     Ok(())
 }

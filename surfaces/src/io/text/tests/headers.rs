@@ -1,6 +1,7 @@
 //! What lines above the numbers say of them.
 
 use super::{MISSING, TestResult, assert_refused, matrix, parsed, shown};
+use crate::io::ReadOptions;
 
 /// Four rows of four heights that are those of no positions and no points.
 const ROWS: &str = "1.5 4.25 1 5\n2 6.5 2 8\n5 8 9.75 3\n1 2 9 4\n";
@@ -13,9 +14,13 @@ fn factors_are_used_or_refused() -> TestResult {
         ("# Height conversion factor (->nm): 2.5 nm/LSB", 2.5),
         ("# Height conversion factor (->nm): 2.5e-1", 0.25),
         ("# Bit2nm: 0,01234 nm", 0.01234),
+        // The factor of a unit stays with it, and a range without a unit names none.
+        ("# Height conversion factor (->nm): 2.5\n# Z unit: m\n# Z Amplitude: 9 m", 2.5),
+        ("# Bit2nm: 3\n# Height conversion factor (->nm): 2.5\n# Z unit: m", 2.5),
+        ("# Value units: nm\n# Z Amplitude: 9", 1.0),
     ] {
         let channel = parsed(format!("{line}\n{sides}{ROWS}"))?;
-        assert_eq!(channel.values[0], 1.5 * factor, "{line}");
+        assert_eq!((channel.values[0], channel.factor), (1.5, factor), "{line}");
         assert_eq!(channel.height_unit.as_deref(), Some("nm"), "{line}");
     }
     for (key, value) in [
@@ -29,12 +34,30 @@ fn factors_are_used_or_refused() -> TestResult {
     Ok(())
 }
 
-/// 1,250 is 1.25 or 1250: numbers with decimal points say that it may be the latter, and those with commas the former.
+/// Another unit of the numbers takes the place of that in the file together with its factor, and that is said.
+#[test]
+fn a_unit_that_is_given_leaves_no_factor() -> TestResult {
+    for (line, unit, metres, said) in [
+        ("Height conversion factor (->m): 1e-9", "nm", 1e-9, "'1e-9 m'"),
+        ("Bit2nm: 2", "um", 1e-6, "'2.0 nm'"),
+        ("Bit2nm: 2", "nm", 1e-9, "'2.0 nm'"),
+    ] {
+        let options = ReadOptions::new().height_unit(unit.parse()?);
+        let text = format!("# {line}\n# Width: 1 µm\n# Height: 1 µm\n{ROWS}");
+        let measured = options.read_bytes(text, "map.txt")?;
+        assert_eq!(measured.heights[(0, 0)], 1.5 * metres, "{line}");
+        assert!(measured.notes[0].ends_with(said), "{:?}", measured.notes);
+    }
+    Ok(())
+}
+
+/// 1,250 is 1.25 or 1250: only numbers with decimal commas say that it is the former.
 #[test]
 fn a_comma_before_three_digits_may_part_thousands() -> TestResult {
     let sides = |width: &str| format!("# Width: {width} µm\n# Height: 1,000 µm\n");
     let said = "the header has '1,250 µm', whose comma parts thousands or is a decimal one";
     assert_refused(format!("{}{ROWS}", sides("1,250")), said);
+    assert_refused(format!("{}{}", sides("1,250"), ROWS.replace('.', "")), said);
     let commas = ROWS.replace('.', ",");
     assert_eq!(parsed(format!("{}{commas}", sides("1,250")))?.cell, Some((1.25 / 4.0, 0.25)));
     // What can only be decimal.
@@ -92,7 +115,9 @@ fn stated_marks_may_be_rounded_and_others_count_too() -> TestResult {
 fn texts_of_instruments_are_named() -> TestResult {
     let wyko = "Wyko ASCII Data File Format 0 0 1\nX Size\t1\t2\t2\nY Size\t1\t2\t2\nWavelength\t7\t4\t500\n\
                 Mult\t6\t2\t1\nRAW_DATA\n1 2\n3 4\n";
-    assert!(parsed(wyko)?.notes.is_empty());
+    let channel = parsed(wyko)?;
+    assert!(channel.notes.is_empty());
+    assert_eq!((channel.factor, channel.height_unit.as_deref()), (500.0, Some("nm")));
     let noted = matrix(wyko)?.notes;
     assert!(noted.len() == 1 && noted[0].contains("the layout 'matrix' is not used"), "{noted:?}");
     let dark = super::parse(wyko.replace("500", "0").as_bytes(), "a.asc".as_ref(), None);

@@ -145,13 +145,16 @@ fn factors_and_marks_of_other_headers_are_applied() -> TestResult {
     let channel = parsed(
         "h=2 w=4\npixel size=3.5e-007 m\ndata unit=rad\nheight conversion factor (-> m)=2.0e-008\n1 2 3 4\n5 6 7 8\n",
     )?;
-    assert_eq!(channel.values[..2], [2e-8, 4e-8]);
+    assert_eq!((&channel.values[..2], channel.factor), (&[1.0, 2.0][..], 2e-8));
     assert_eq!(channel.height_unit.as_deref(), Some("m"));
     assert_eq!(channel.cell, Some((3.5e-7, 3.5e-7)));
     let grid = "ncols 4\nnrows 1\nxllcorner 12.5\ncellsize 30\nNODATA_value -9999\n1 -9999 3 4\n";
     let channel = parsed(grid)?;
     assert!(channel.values[1].is_nan() && channel.values[0] == 1.0);
     assert_eq!((channel.cell, channel.lateral_unit), (Some((30.0, 30.0)), None));
+    let with_unit = parsed(grid.replace("cellsize 30", "cellsize 30 mm"))?;
+    assert_eq!((with_unit.cell, with_unit.lateral_unit.as_deref()), (channel.cell, Some("mm")));
+    assert_eq!(with_unit.understood, channel.understood);
     Ok(())
 }
 

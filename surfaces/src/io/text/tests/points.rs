@@ -53,6 +53,37 @@ fn names_of_columns_tell_a_list_and_its_units() -> TestResult {
     Ok(())
 }
 
+/// In lists and in profiles, units of columns have to be those of the lines above, in whichever spelling.
+#[test]
+fn names_of_columns_agree_with_the_header() -> TestResult {
+    let tables = [
+        "x (um)  y (um)  z (nm)\n0 0 0\n2 0 20\n0 5 5\n2 5 25\n",
+        "x (um)  z (nm)\n0 5\n1 7\n2 6\n3 9\n",
+    ];
+    for table in tables {
+        for (line, said) in [
+            (
+                "Height conversion factor (->m): 1e-9",
+                "heights, the name of the column says 'nm', but the header '1e-9 m'",
+            ),
+            ("Bit2nm: 2", "heights, the name of the column says 'nm', but the header '2.0 nm'"),
+            ("Z unit: um", "heights, the name of the column says 'nm', but the header 'um'"),
+            ("XY unit: mm", "x, the name of the column says 'um', but the header 'mm'"),
+        ] {
+            assert_refused(format!("# {line}\n{table}"), &format!("of {said}"));
+        }
+        let same = parsed(format!("# XY unit: µm\n# Z unit: nanometer\n{table}"))?;
+        let units = [same.lateral_unit.as_deref(), same.height_unit.as_deref()];
+        assert_eq!(units, [Some("um"), Some("nm")]);
+    }
+    let list = tables[0];
+    assert!(parsed(format!("# Lateral units: µm\n{list}")).is_ok());
+    let unnamed = list.replace(" (um)", "").replace(" (nm)", "");
+    let channel = parsed(format!("# XY unit: µm\n{unnamed}"))?;
+    assert_eq!((channel.lateral_unit.as_deref(), channel.height_unit), (Some("µm"), None));
+    Ok(())
+}
+
 /// All nodes of a grid of 30 x 20, in so many columns.
 fn grid(columns: usize) -> String {
     let more = |k: usize| (3..columns).map(move |c| format!(" {}", (k * k + c) % 13));
