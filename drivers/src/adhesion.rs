@@ -89,6 +89,10 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         Ok(Some(made)) => made,
         Ok(None) => return Ok(Tally::refusal()),
         Err(_) if is_long => return Ok(Tally::refusal()),
+        // A single cell that repeats.
+        Err(Error::OutOfRange { value: 0.0, .. }) if grid.nodes() == 1 => {
+            return Ok(Tally::refusal());
+        }
         Err(error) => {
             return Err(Violation::new(format!("a sensible law was refused: {error}")));
         }
