@@ -393,9 +393,9 @@ impl Trial<'_> {
         self.tally.close("interfacial stiffness", found * closing, area * pressures, allowed)
     }
 
-    /// Whether all equilibria can be tried. On the spectral half-space there need be no greatest.
+    /// Whether all equilibria can be tried, of which some are extreme.
     fn is_tried(&self, fields: &AdhesiveFields) -> bool {
-        fields.gap.len() <= TRIED && self.sample.class != Class::Spectral
+        fields.gap.len() <= TRIED && self.exact.is_cooperative()
     }
 
     /// The gaps of all equilibria at the approach of a state, less those of the state.

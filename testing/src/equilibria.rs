@@ -29,6 +29,18 @@ impl Equilibria {
         }
     }
 
+    /// Whether nodes only help each other to close: the inverse of the matrix has no positive element off its diagonal,
+    /// and no negative sum of a row. Then one equilibrium at an approach has the greatest gaps, and one the least.
+    #[must_use]
+    pub fn is_cooperative(&self) -> bool {
+        let size = self.gap.len();
+        let inverse = self.matrix.clone().try_inverse();
+        inverse.is_some_and(|inverse| {
+            let helps = |i: usize, j: usize| i == j || inverse[(i, j)] <= 0.0;
+            (0..size).all(|i| inverse.row(i).sum() >= 0.0 && (0..size).all(|j| helps(i, j)))
+        })
+    }
+
     /// The approach of a state in the gauge of the kernel.
     #[must_use]
     pub fn approach(&self, fields: &AdhesiveFields) -> f64 {
