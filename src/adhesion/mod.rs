@@ -4,7 +4,7 @@
 //! [`AdhesivePath`] follows the contact event by event: nodes come near, touch, part and go out of range. Between two
 //! events everything is linear in the approach, as on a path without adhesion, and every state is exact. There are two
 //! *branches*, since a contact that sticks is not that of loading when it is unloaded: loading has the equilibrium of
-//! the greatest gaps, unloading that of the least.
+//! the greatest gaps, unloading that of the least, on bodies of [convex](crate::ContactGrowth::Convex) gaps.
 //!
 //! ```
 //! use asperity::adhesion::{Adhesion, AdhesivePath};
