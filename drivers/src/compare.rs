@@ -9,8 +9,10 @@ use crate::verdict::{Tally, Violation, ensure};
 
 /// Events closer than this, relative to the approach, are ties: `asperity::loading` says so.
 const TIE: f64 = 1e-9;
-/// The same relative to the mean initial gap, where there is no approach yet.
+/// The same relative to the mean initial gap, where there is no approach yet, and to the greatest one, as whose part
+/// rounding of heights counts.
 const FIRST_TIE: f64 = 1e-13;
+const TIE_OF_HEIGHTS: f64 = 1e-14;
 /// Approaches closer than this, relative to the one that is computed with, are one.
 const ROUNDING: f64 = 1e-13;
 
@@ -99,7 +101,8 @@ pub(crate) fn same_path(
             .any(|other| (other.contact.approach - own).abs() <= ROUNDING * computed(&found[k]))
     };
     let tie = |k: usize| {
-        let tie = (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
+        let of_heights = (FIRST_TIE * initial).max(TIE_OF_HEIGHTS * dense.greatest_gap());
+        let tie = (TIE * computed(&exact[k])).max(of_heights);
         let off = if is_together(k) { bounds.excess * found[k].approach_error } else { 0.0 };
         tie.max(off)
     };

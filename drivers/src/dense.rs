@@ -209,6 +209,11 @@ impl Dense {
         length / self.length
     }
 
+    /// The greatest initial gap \[m\].
+    pub(crate) fn greatest_gap(&self) -> f64 {
+        self.gap.max() * self.length
+    }
+
     /// A pressure \[Pa\] in its own units.
     pub(crate) fn own_pressure(&self, pressure: f64) -> f64 {
         pressure / self.length * self.compliance

@@ -38,11 +38,11 @@
 //! plays the same events a second time, and settles neighbours that are still too close by a solution of their own
 //! (`docs/theory.md`, section 11).
 //!
-//! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach. On a
-//!   periodic half-space it is the approach in the gauge that is computed with, which contains the mean displacement
-//!   under the load. Nodes that touch together as a window begins join in the order of their indices at one approach,
-//!   and are ties as far as the solutions there tell them apart: 10⁻⁸ of that approach over the rate at which their
-//!   gaps close.
+//! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach or 10⁻¹⁴
+//!   of the deepest gap at first touch. On a periodic half-space it is the approach in the gauge that is computed with,
+//!   which contains the mean displacement under the load. Nodes that touch together as a window begins join in the
+//!   order of their indices at one approach, and are ties as far as the solutions there tell them apart: 10⁻⁸ of that
+//!   approach over the rate at which their gaps close.
 //! * *The ends of windows*, some fifty events apart, are certified: they are solutions of the contact problem, checked
 //!   for tension and overlap. The end of a window also shows how far its Schur complement was from exact. On a periodic
 //!   strip of a few rows, where distant contacts matter as much as near ones, windows become shorter, down to one
