@@ -185,6 +185,7 @@ fn a_path_that_failed_goes_on_from_its_record() {
 }
 
 /// A record of a path that has turned around, and has no state there yet, goes on the way it has turned to.
+#[cfg(feature = "io")]
 #[test]
 fn records_know_which_way_a_path_goes() {
     for work in [1e-3, 0.0] {
