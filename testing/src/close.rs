@@ -1,11 +1,28 @@
 //! Differences of numbers and of states.
 
+#[doc(hidden)]
+pub use approx::assert_relative_eq;
+
 use asperity::LoadingState;
 
 /// How far a number is from the one expected.
 #[must_use]
 pub fn relative(found: f64, expected: f64) -> f64 {
     ((found - expected) / expected).abs()
+}
+
+/// Asserts that two numbers differ by no more than a part of the greater. `approx` would also let pass what differs by
+/// less than 2.2e-16, whatever the unit.
+#[macro_export]
+macro_rules! assert_relative {
+    ($found:expr, $expected:expr, $tolerance:expr $(,)?) => {
+        $crate::close::assert_relative_eq!(
+            $found,
+            $expected,
+            epsilon = 0.0,
+            max_relative = $tolerance
+        )
+    };
 }
 
 /// Every column of two states within `tolerance`, relative to its own size; mean gaps relative to the

@@ -21,6 +21,13 @@ pub fn rough(grid: &Grid, seed: u64) -> HeightMap {
     self_affine(grid, 0.8, 1e-2 * lx.max(ly), seed)
 }
 
+/// Whole numbers below `levels` without any correlation; few levels make ties.
+#[must_use]
+pub fn scattered((nx, ny): (usize, usize), levels: usize, seed: usize) -> DMatrix<f64> {
+    let level = |ix: usize, iy: usize| 7919 * (ix + seed) + 104_729 * iy + 31 * ix * iy + seed;
+    DMatrix::from_fn(nx, ny, |ix, iy| (level(ix, iy) % levels) as f64)
+}
+
 /// Means over the 3 × 3 neighbours that there are, and a little of the height itself, so that heights stay different on
 /// grids of less than three nodes a side.
 #[must_use]

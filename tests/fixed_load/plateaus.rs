@@ -6,6 +6,7 @@ use std::path::Path;
 use asperity::io::read_npy;
 use asperity::loading::History;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity_testing::surfaces::scattered;
 use nalgebra::DMatrix;
 
 use asperity::{
@@ -228,25 +229,14 @@ fn sweeps_leave_plateaus_for_other_mean_gaps() {
     }
 }
 
-/// A surface without any correlation, and the root mean square of its gradient over neighbours on either side.
-fn white(nx: usize, ny: usize, seed: usize) -> (HeightMap, f64) {
-    let height = |ix: usize, iy: usize| {
-        1e-9 * ((7919 * (ix + seed) + 104_729 * iy + 31 * ix * iy + seed) % 1009) as f64
-    };
-    let heights = DMatrix::from_fn(nx, ny, height);
-    let squares = (0..nx * ny).map(|node| {
-        let (ix, iy) = (node % nx, node / nx);
-        let steps = [heights[((ix + 1) % nx, iy)], heights[(ix, (iy + 1) % ny)]];
-        steps.map(|height| ((height - heights[(ix, iy)]) / 1e-5).powi(2)).iter().sum::<f64>()
-    });
-    let gradient = (squares.sum::<f64>() / (nx * ny) as f64).sqrt();
-    (HeightMap::new(heights).unwrap(), gradient)
+fn white(shape: (usize, usize), seed: usize) -> HeightMap {
+    HeightMap::new(1e-9 * scattered(shape, 1009, seed)).unwrap()
 }
 
 /// Where all nodes have yielded none is out of contact: the interface is as stiff as on the path.
 #[test]
 fn behind_the_last_yield_the_interface_is_closed() {
-    let (surface, _) = white(4, 3, 0);
+    let surface = white((4, 3), 0);
     for kernel in kernels(Grid::new(4, 3, 1e-5, 1e-5).unwrap()) {
         let history = path(&surface, &*kernel, 1e9);
         let approach = 1.3 * history.states().last().unwrap().contact.approach;
@@ -267,9 +257,10 @@ fn behind_the_last_yield_the_interface_is_closed() {
 #[test]
 fn approaches_about_full_contact() {
     for seed in 0..12 {
-        let (nx, ny) = (3 + seed % 5, 3 + seed % 7);
-        let (surface, gradient) = white(nx, ny, seed);
-        let [_, periodic @ ..] = kernels(Grid::new(nx, ny, 1e-5, 1e-5).unwrap());
+        let grid = Grid::new(3 + seed % 5, 3 + seed % 7, 1e-5, 1e-5).unwrap();
+        let surface = white(grid.shape(), seed);
+        let gradient = surface.rms_gradient(&grid).unwrap();
+        let [_, periodic @ ..] = kernels(grid);
         for kernel in periodic {
             for times in [5.0, 30.0] {
                 let hardness = times * gradient * E_STAR;

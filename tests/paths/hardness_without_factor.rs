@@ -10,7 +10,7 @@ use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{ContactEvent, ContactTarget, Error, Grid, LoadingSolver, LoadingState, Spectral};
 use asperity_testing::dense;
-use asperity_testing::surfaces::self_affine;
+use asperity_testing::surfaces::{scattered, self_affine};
 use nalgebra::{DMatrix, DVector};
 
 #[cfg(feature = "io")]
@@ -111,39 +111,20 @@ fn compare(
     worst
 }
 
-/// The root mean square gradient of heights on a square grid of side 1.
-fn gradient(heights: &DMatrix<f64>) -> f64 {
-    let (nx, ny) = heights.shape();
-    let at = |ix: usize, iy: usize| heights[(ix % nx, iy % ny)];
-    let squares = (0..nx * ny).map(|node| {
-        let (ix, iy) = (node % nx, node / nx);
-        let along = [at(ix + 1, iy) - at(ix, iy), at(ix, iy + 1) - at(ix, iy)];
-        along.map(|d| (d * nx as f64).powi(2)).iter().sum::<f64>()
-    });
-    (squares.sum::<f64>() / (nx * ny) as f64).sqrt()
-}
-
-/// A surface without any correlation.
-fn white(grid: &Grid) -> HeightMap {
-    let (nx, ny) = grid.shape();
-    let height = |ix: usize, iy: usize| ((7919 * ix + 104_729 * iy + 31 * ix * iy) % 10_007) as f64;
-    HeightMap::new(DMatrix::from_fn(nx, ny, |ix, iy| 5e-7 * height(ix, iy))).unwrap()
-}
-
 /// From first touch to the yield of the last node, from soft to hard; and no error of an approach beyond its estimate,
 /// nor all of them far below.
 #[test]
 fn surfaces_have_the_events_of_the_factor() {
     let grid = Grid::square(36, 1.0).unwrap();
+    let white = HeightMap::new(5e-7 * scattered(grid.shape(), 10_007, 0)).unwrap();
+    let surfaces = [(self_affine(&grid, 0.8, 5e-3, 1), "rough"), (white, "white")];
     let mut most: f64 = 0.0;
     for (name, kernel) in half_spaces(grid) {
-        for (surface, kind) in
-            [(self_affine(&grid, 0.8, 5e-3, 1), "rough"), (white(&grid), "white")]
-        {
-            let gradient = gradient(surface.matrix());
+        for (surface, kind) in &surfaces {
+            let gradient = surface.rms_gradient(&grid).unwrap();
             for ratio in [0.1, 0.5, 1.5] {
                 let builder =
-                    || LoadingSolver::builder(&surface, &kernel).hardness(ratio * gradient);
+                    || LoadingSolver::builder(surface, &kernel).hardness(ratio * gradient);
                 let exact = all(builder().updater(RecursiveCholesky::new()));
                 assert_eq!(exact.len(), 2 * grid.nodes());
                 let found = all(builder().updater(ConjugateGradient::new()));

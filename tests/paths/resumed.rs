@@ -10,6 +10,7 @@ use asperity::{
     Boussinesq, ContactEvent, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver,
     LoadingState, PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
+use asperity_testing::surfaces::scattered;
 use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -120,9 +121,7 @@ fn behind_every_state_of_small_grids_with_a_hardness() {
     };
     let terraces = rough(7, 8, 8).map(|height| if height > 0.0 { 1e-6 } else { 0.0 });
     // In the end of a window all of it has yielded.
-    let soft = DMatrix::from_fn(7, 5, |ix, iy| {
-        1e-9 * ((7919 * (ix + 2) + 104_729 * iy + 31 * ix * iy + 2) % 1009) as f64
-    });
+    let soft = 1e-9 * scattered((7, 5), 1009, 2);
     for (heights, hardness) in [
         (rough(1, 6, 6), 1e8),
         (rough(4, 5, 8), 6e9),

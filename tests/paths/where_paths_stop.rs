@@ -10,7 +10,7 @@ use asperity::{
     Boundary, Boussinesq, ContactGrowth, ContactTarget, Error, Grid, InfluenceKernel,
     LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral,
 };
-use asperity_testing::surfaces::self_affine;
+use asperity_testing::surfaces::{scattered, self_affine};
 use nalgebra::DMatrix;
 
 fn grid() -> Grid {
@@ -251,11 +251,8 @@ fn ties_close_the_contact() {
     for seed in 0..40 {
         let grid = Grid::new(6, 7, 1.0, 1.0).unwrap();
         // In steps, and the same from either side.
-        let step = |ix: usize, iy: usize| {
-            let height = (7919 * (ix + seed) + 104_729 * iy + 31 * ix * iy + 17 * seed) % 23;
-            height as f64 / 300.0
-        };
-        let mirrored = DMatrix::from_fn(6, 7, |ix, iy| step(ix, iy) + step(5 - ix, iy));
+        let steps = scattered(grid.shape(), 23, seed) / 300.0;
+        let mirrored = DMatrix::from_fn(6, 7, |ix, iy| steps[(ix, iy)] + steps[(5 - ix, iy)]);
         let surface = HeightMap::new(mirrored).unwrap();
         let youngs_modulus = [10.0, 100.0, 1000.0][seed % 3];
         let coat = Layer { youngs_modulus, poissons_ratio: 0.3, thickness: 0.2 };

@@ -1,13 +1,13 @@
 //! Limits: what is refused, where a path ends, and why.
 
 use crate::common::Sphere;
-use approx::assert_relative_eq;
 use asperity::loading::{ContactEvent, LoadingBuilder, LoadingEnd};
 use asperity::surface::HeightMap;
 use asperity::{
     Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq,
     SurfaceError,
 };
+use asperity_testing::assert_relative;
 use nalgebra::DMatrix;
 
 /// A limit of a builder.
@@ -141,12 +141,7 @@ fn the_first_limit_reached_counts() {
         sphere.builder().max_mean_pressure(pressure).max_load(load),
     ] {
         let states = run(builder, LoadingEnd::Load);
-        assert_relative_eq!(
-            states.last().unwrap().contact.load,
-            0.5 * load,
-            epsilon = 0.0,
-            max_relative = 1e-15
-        );
+        assert_relative!(states.last().unwrap().contact.load, 0.5 * load, 1e-15);
     }
     let (near, far) = (all[12].contact, all[15].contact);
     for [first, second] in [[near, far], [far, near]] {

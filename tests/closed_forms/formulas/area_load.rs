@@ -1,8 +1,8 @@
 //! How the contact area of a rough surface grows with the load.
 
-use approx::assert_relative_eq;
 use asperity::Error;
 use asperity::reference::AreaLoadLaw;
+use asperity_testing::assert_relative;
 use std::f64::consts::PI;
 
 use super::quadrature::integrate;
@@ -20,14 +20,9 @@ fn perssons_area_is_that_of_his_pressure_distribution() -> Result<(), Error> {
         let density = |p: f64| law.persson_density(p, mean);
         let far = mean + 12.0 * law.full_contact_deviation();
         // The quadrature has a few hundred terms of rounding.
-        assert_relative_eq!(
-            integrate(density, 0.0, far),
-            law.persson(mean),
-            epsilon = 0.0,
-            max_relative = 1e-12
-        );
+        assert_relative!(integrate(density, 0.0, far), law.persson(mean), 1e-12);
         let load = integrate(|p| p * density(p), 0.0, far);
-        assert_relative_eq!(load, mean, epsilon = 0.0, max_relative = 1e-12);
+        assert_relative!(load, mean, 1e-12);
     }
     Ok(())
 }
@@ -44,7 +39,7 @@ fn perssons_density_is_a_gaussian_less_its_image() -> Result<(), Error> {
             let expected = gauss(p - mean) - gauss(p + mean);
             let found = law.persson_density(p * deviation, mean * deviation);
             // Arguments of up to 32 in the exponential carry as many rounding errors.
-            assert_relative_eq!(found, expected, epsilon = 0.0, max_relative = 1e-13);
+            assert_relative!(found, expected, 1e-13);
         }
     }
     assert_eq!(law.persson_density(0.0, 1e9), 0.0);
@@ -62,7 +57,7 @@ fn perssons_curve_starts_along_his_line_and_ends_at_one() -> Result<(), Error> {
     // erf x departs from its tangent by x²/3, here 7e-13.
     let light = 1e4;
     let line = law.proportional(AreaLoadLaw::PERSSON, light);
-    assert_relative_eq!(law.persson(light), line, epsilon = 0.0, max_relative = 1e-12);
+    assert_relative!(law.persson(light), line, 1e-12);
     for mean in [1e8, 1e9, 1e10] {
         assert!(law.persson(mean) < law.proportional(AreaLoadLaw::PERSSON, mean));
     }
@@ -74,25 +69,10 @@ fn perssons_curve_starts_along_his_line_and_ends_at_one() -> Result<(), Error> {
 #[test]
 fn slopes_are_what_their_formulas_say() {
     // The constants are rounded once, the roots of a rounded π twice.
-    assert_relative_eq!(
-        AreaLoadLaw::BUSH_GIBSON_THOMAS,
-        (2.0 * PI).sqrt(),
-        epsilon = 0.0,
-        max_relative = 4e-16
-    );
-    assert_relative_eq!(
-        AreaLoadLaw::PERSSON,
-        (8.0 / PI).sqrt(),
-        epsilon = 0.0,
-        max_relative = 4e-16
-    );
+    assert_relative!(AreaLoadLaw::BUSH_GIBSON_THOMAS, (2.0 * PI).sqrt(), 4e-16);
+    assert_relative!(AreaLoadLaw::PERSSON, (8.0 / PI).sqrt(), 4e-16);
     // The asperity theory gives π/2 times the area of Persson's.
-    assert_relative_eq!(
-        AreaLoadLaw::BUSH_GIBSON_THOMAS / AreaLoadLaw::PERSSON,
-        0.5 * PI,
-        epsilon = 0.0,
-        max_relative = 1e-15
-    );
+    assert_relative!(AreaLoadLaw::BUSH_GIBSON_THOMAS / AreaLoadLaw::PERSSON, 0.5 * PI, 1e-15);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Conductance of a contact from its stiffness.
 
-use approx::assert_relative_eq;
 use asperity::Error;
 use asperity::reference::{CircularPunch, HertzSphere, Westergaard, contact_conductance};
+use asperity_testing::assert_relative;
 use std::f64::consts::PI;
 
 /// Holm's constriction resistance of a spot of radius a is ρ/4a in each body, whatever presses
@@ -17,7 +17,7 @@ fn a_circular_spot_has_holms_resistance() -> Result<(), Error> {
     let holm = 1.0 / (rho_1 / (4.0 * a) + rho_2 / (4.0 * a));
     for stiffness in [sphere.contact_stiffness(approach), punch.contact_stiffness()] {
         let found = contact_conductance(stiffness, e_star, rho_1 + rho_2)?;
-        assert_relative_eq!(found, holm, epsilon = 0.0, max_relative = 1e-15);
+        assert_relative!(found, holm, 1e-15);
     }
     Ok(())
 }
@@ -37,7 +37,7 @@ fn strips_have_the_resistance_of_a_conformal_map() -> Result<(), Error> {
         let resistance = |rho: f64| rho * wavelength / PI * -(PI * part).sin().ln();
         let expected = 1.0 / (resistance(rho_1) + resistance(rho_2));
         // At a/λ = 0.49 the logarithm is 5e-4, and shows 2000 rounding errors of its argument.
-        assert_relative_eq!(found, expected, epsilon = 0.0, max_relative = 5e-12);
+        assert_relative!(found, expected, 5e-12);
     }
     let full = wave.interfacial_stiffness(wave.full_contact_pressure());
     assert_eq!(contact_conductance(full, wave.e_star(), rho_1)?, f64::INFINITY);

@@ -1,8 +1,8 @@
 //! Cone on a half-space.
 
-use approx::assert_relative_eq;
 use asperity::Error;
 use asperity::reference::Cone;
+use asperity_testing::assert_relative;
 use std::f64::consts::PI;
 
 use super::quadrature::{derivative, integrate, ring_displacement};
@@ -20,9 +20,9 @@ fn pressure_adds_up_to_load_and_its_mean() -> Result<(), Error> {
         let a = cone.contact_radius(d);
         let load = integrate(|r| 2.0 * PI * r * cone.pressure(r, d), 0.0, a);
         // Accuracy of the quadrature.
-        assert_relative_eq!(load, cone.load(d), epsilon = 0.0, max_relative = 1e-12);
+        assert_relative!(load, cone.load(d), 1e-12);
         let mean = cone.load(d) / cone.contact_area(d);
-        assert_relative_eq!(mean, cone.mean_pressure(), epsilon = 0.0, max_relative = 1e-14);
+        assert_relative!(mean, cone.mean_pressure(), 1e-14);
     }
     Ok(())
 }
@@ -32,12 +32,12 @@ fn load_is_the_slope_of_energy_and_stiffness_that_of_load() -> Result<(), Error>
     let cone = cone()?;
     for d in APPROACHES {
         let work = integrate(|x| cone.load(x), 0.0, d);
-        assert_relative_eq!(work, cone.energy(d), epsilon = 0.0, max_relative = 1e-13);
+        assert_relative!(work, cone.energy(d), 1e-13);
         let slope = derivative(|x| cone.load(x), d);
         // Stated error of the difference formula, with a margin of ten.
-        assert_relative_eq!(slope, cone.contact_stiffness(d), epsilon = 0.0, max_relative = 2e-12);
+        assert_relative!(slope, cone.contact_stiffness(d), 2e-12);
         let back = cone.approach_at_load(cone.load(d));
-        assert_relative_eq!(back, d, epsilon = 0.0, max_relative = 1e-15);
+        assert_relative!(back, d, 1e-15);
     }
     Ok(())
 }
@@ -49,18 +49,18 @@ fn displacement_is_that_of_the_pressure() -> Result<(), Error> {
     let a = cone.contact_radius(d);
     // At the apex every ring of load lies at its own radius.
     let apex = 2.0 / cone.e_star() * integrate(|r| cone.pressure(r, d), 0.0, a);
-    assert_relative_eq!(apex, cone.displacement(0.0, d), epsilon = 0.0, max_relative = 1e-12);
+    assert_relative!(apex, cone.displacement(0.0, d), 1e-12);
     for ratio in [1.2, 2.0, 5.0, 40.0] {
         let r = ratio * a;
         let rings = ring_displacement(|s| cone.pressure(s, d), a, r, cone.e_star());
         // Accuracy of the quadrature, whose integrand is nearly singular close to the edge.
-        assert_relative_eq!(rings, cone.displacement(r, d), epsilon = 0.0, max_relative = 1e-12);
+        assert_relative!(rings, cone.displacement(r, d), 1e-12);
         assert!(cone.displacement(r, d) + cone.slope() * r > d);
     }
     // Far away, a point load: the next term is of order (a/r)² = 1e-16.
     let r = 1e8 * a;
     let point = cone.load(d) / (PI * cone.e_star() * r);
-    assert_relative_eq!(cone.displacement(r, d), point, epsilon = 0.0, max_relative = 1e-15);
+    assert_relative!(cone.displacement(r, d), point, 1e-15);
     Ok(())
 }
 
@@ -73,7 +73,7 @@ fn edge_and_apex() -> Result<(), Error> {
     assert_eq!(cone.pressure(0.0, d), f64::INFINITY);
     // The slope of the surface is continuous at the edge, so one rounding of r is one of u.
     let beyond = cone.displacement(a * (1.0 + 1e-15), d);
-    assert_relative_eq!(cone.displacement(a, d), beyond, epsilon = 0.0, max_relative = 1e-14);
+    assert_relative!(cone.displacement(a, d), beyond, 1e-14);
     Ok(())
 }
 

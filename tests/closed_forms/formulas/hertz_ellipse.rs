@@ -1,8 +1,9 @@
 //! Elliptic paraboloid on a half-space (Hertz).
 
-use approx::assert_relative_eq;
+use approx::assert_abs_diff_eq;
 use asperity::Error;
 use asperity::reference::{HertzEllipse, HertzLine, HertzSphere};
+use asperity_testing::assert_relative;
 use std::f64::consts::PI;
 
 use super::quadrature::{derivative, integrate};
@@ -33,13 +34,13 @@ fn equal_radii_make_a_sphere() -> Result<(), Error> {
             (ellipse.pressure(0.6 * r, 0.8 * r, d), sphere.pressure(r, d)),
             (ellipse.approach_at_load(3.0), sphere.approach_at_load(3.0)),
         ] {
-            assert_relative_eq!(found, expected, epsilon = 0.0, max_relative = tolerance);
+            assert_relative!(found, expected, tolerance);
         }
     }
     // To first order b/a = 1 − (2/3)(1 − R_min/R_max), so e² = (4/3) η; the next order is η.
     let ellipse = HertzEllipse::new(1.0, 1.0 - 1e-8, 1.0)?;
     let square = ellipse.eccentricity() * ellipse.eccentricity();
-    assert_relative_eq!(square, 4.0 / 3.0 * 1e-8, epsilon = 0.0, max_relative = 2e-8);
+    assert_relative!(square, 4.0 / 3.0 * 1e-8, 2e-8);
     Ok(())
 }
 
@@ -55,19 +56,9 @@ fn a_slender_contact_is_a_line_contact() -> Result<(), Error> {
         let per_length = 0.5 * PI * ellipse.max_pressure(d) * minor;
         // The difference is of order (b/a)² ln(a/b), which is about the ratio of radii.
         let tolerance = f64::max(2.0 * ratio, 2e-14);
-        assert_relative_eq!(
-            minor,
-            line.half_width(per_length),
-            epsilon = 0.0,
-            max_relative = tolerance
-        );
+        assert_relative!(minor, line.half_width(per_length), tolerance);
         let pressure = line.max_pressure(per_length);
-        assert_relative_eq!(
-            ellipse.max_pressure(d),
-            pressure,
-            epsilon = 0.0,
-            max_relative = tolerance
-        );
+        assert_relative!(ellipse.max_pressure(d), pressure, tolerance);
     }
     Ok(())
 }
@@ -97,7 +88,7 @@ fn displacement_of_the_pressure_fits_the_paraboloid() -> Result<(), Error> {
         let profile = 0.5 * x * x / ellipse.radius_x() + 0.5 * y * y / ellipse.radius_y();
         // The sum over directions is exact to rounding. Near the edge the pressure loses digits
         // to 1 − x² − y², which costs 1e-12 over a chord.
-        assert_relative_eq!(found / d, (d - profile) / d, epsilon = 1e-11);
+        assert_abs_diff_eq!(found / d, (d - profile) / d, epsilon = 1e-11);
     }
     Ok(())
 }
@@ -107,17 +98,12 @@ fn load_is_the_slope_of_energy_and_stiffness_that_of_load() -> Result<(), Error>
     let ellipse = ellipse()?;
     for d in [1e-9, 1.3e-6, 1e-3] {
         let work = integrate(|x| ellipse.load(x), 0.0, d);
-        assert_relative_eq!(work, ellipse.energy(d), epsilon = 0.0, max_relative = 1e-13);
+        assert_relative!(work, ellipse.energy(d), 1e-13);
         let slope = derivative(|x| ellipse.load(x), d);
         // Stated error of the difference formula, with a margin of ten.
-        assert_relative_eq!(
-            slope,
-            ellipse.contact_stiffness(d),
-            epsilon = 0.0,
-            max_relative = 2e-12
-        );
+        assert_relative!(slope, ellipse.contact_stiffness(d), 2e-12);
         let back = ellipse.approach_at_load(ellipse.load(d));
-        assert_relative_eq!(back, d, epsilon = 0.0, max_relative = 2e-15);
+        assert_relative!(back, d, 2e-15);
     }
     Ok(())
 }
@@ -129,12 +115,11 @@ fn swapping_the_radii_turns_the_contact() -> Result<(), Error> {
     let (along_x, along_y) = one.semi_axes(d);
     assert_eq!(other.semi_axes(d), (along_y, along_x));
     assert!(along_x < along_y);
-    assert_relative_eq!(one.load(d), other.load(d), epsilon = 0.0, max_relative = 1e-15);
-    assert_relative_eq!(
+    assert_relative!(one.load(d), other.load(d), 1e-15);
+    assert_relative!(
         one.pressure(0.3 * along_x, 0.5 * along_y, d),
         other.pressure(0.5 * along_y, 0.3 * along_x, d),
-        epsilon = 0.0,
-        max_relative = 1e-15
+        1e-15
     );
     Ok(())
 }

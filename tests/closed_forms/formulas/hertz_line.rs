@@ -1,8 +1,8 @@
 //! Cylinder on a half-space (Hertz).
 
-use approx::assert_relative_eq;
 use asperity::Error;
 use asperity::reference::HertzLine;
+use asperity_testing::assert_relative;
 use std::f64::consts::PI;
 
 use super::quadrature::integrate;
@@ -20,10 +20,10 @@ fn pressure_adds_up_to_the_load() -> Result<(), Error> {
         let a = line.half_width(load);
         let sum = integrate(|x| line.pressure(x, load), -a, a);
         // Accuracy of the quadrature.
-        assert_relative_eq!(sum, load, epsilon = 0.0, max_relative = 1e-12);
+        assert_relative!(sum, load, 1e-12);
         let mean = load / (2.0 * a);
-        assert_relative_eq!(mean, line.mean_pressure(load), epsilon = 0.0, max_relative = 1e-14);
-        assert_relative_eq!(line.load_at_half_width(a), load, epsilon = 0.0, max_relative = 1e-14);
+        assert_relative!(mean, line.mean_pressure(load), 1e-14);
+        assert_relative!(line.load_at_half_width(a), load, 1e-14);
         assert_eq!(line.pressure(0.0, load), line.max_pressure(load));
         assert_eq!(line.pressure(a, load), 0.0);
         assert_eq!(line.pressure(2.0 * a, load), 0.0);
@@ -51,7 +51,7 @@ fn displacement_of_the_pressure_fits_the_cylinder() -> Result<(), Error> {
     for ratio in [0.1, 0.5, 0.9, 1.0] {
         let bent = logarithmic(ratio * a) - center;
         // Accuracy of the quadrature, in units of the depth of the contact.
-        assert_relative_eq!(bent / depth, -ratio * ratio, epsilon = 0.0, max_relative = 1e-11);
+        assert_relative!(bent / depth, -ratio * ratio, 1e-11);
     }
     for ratio in [1.1, 2.0, 10.0] {
         let bent = logarithmic(ratio * a) - center;

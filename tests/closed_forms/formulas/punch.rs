@@ -1,8 +1,8 @@
 //! Flat punches on a half-space.
 
-use approx::assert_relative_eq;
 use asperity::Error;
 use asperity::reference::{CircularPunch, HertzSphere, SQUARE_PUNCH_STIFFNESS};
+use asperity_testing::assert_relative;
 use std::f64::consts::PI;
 
 use super::quadrature::{integrate, ring_displacement};
@@ -21,12 +21,12 @@ fn pressure_adds_up_to_load_and_its_mean() -> Result<(), Error> {
     for (c, tolerance) in [(0.3_f64, 1e-12), (0.9, 1e-12), (1.0, 1e-7)] {
         let inner = integrate(|r| 2.0 * PI * r * punch.pressure(r, d), 0.0, c * a);
         let share = 1.0 - (1.0 - c * c).sqrt();
-        assert_relative_eq!(inner, share * punch.load(d), epsilon = 0.0, max_relative = tolerance);
+        assert_relative!(inner, share * punch.load(d), tolerance);
     }
     let mean = punch.load(d) / punch.contact_area();
-    assert_relative_eq!(mean, punch.mean_pressure(d), epsilon = 0.0, max_relative = 1e-15);
+    assert_relative!(mean, punch.mean_pressure(d), 1e-15);
     let center = punch.pressure(0.0, d);
-    assert_relative_eq!(center, 0.5 * mean, epsilon = 0.0, max_relative = 1e-15);
+    assert_relative!(center, 0.5 * mean, 1e-15);
     Ok(())
 }
 
@@ -39,12 +39,12 @@ fn displacement_is_that_of_the_pressure() -> Result<(), Error> {
         let r = ratio * a;
         let rings = ring_displacement(|s| punch.pressure(s, d), a, r, punch.e_star());
         // √ε of the quadrature, as above.
-        assert_relative_eq!(rings, punch.displacement(r, d), epsilon = 0.0, max_relative = 1e-7);
+        assert_relative!(rings, punch.displacement(r, d), 1e-7);
     }
     // Far away, a point load: the next term is (a/r)²/6 = 2e-17.
     let r = 1e8 * a;
     let point = punch.load(d) / (PI * punch.e_star() * r);
-    assert_relative_eq!(punch.displacement(r, d), point, epsilon = 0.0, max_relative = 1e-15);
+    assert_relative!(punch.displacement(r, d), point, 1e-15);
     Ok(())
 }
 
@@ -65,7 +65,7 @@ fn a_sphere_is_a_sequence_of_punches() -> Result<(), Error> {
         (sum(&|p| p.displacement(far, 1.0)), sphere.displacement(far, d)),
     ] {
         // Accuracy of the quadrature.
-        assert_relative_eq!(punches, whole, epsilon = 0.0, max_relative = 1e-12);
+        assert_relative!(punches, whole, 1e-12);
     }
     Ok(())
 }
@@ -75,9 +75,9 @@ fn energy_is_work_and_load_inverts() -> Result<(), Error> {
     let punch = punch()?;
     let d = 1e-6;
     let work = integrate(|x| punch.load(x), 0.0, d);
-    assert_relative_eq!(work, punch.energy(d), epsilon = 0.0, max_relative = 1e-14);
+    assert_relative!(work, punch.energy(d), 1e-14);
     let back = punch.approach_at_load(punch.load(d));
-    assert_relative_eq!(back, d, epsilon = 0.0, max_relative = 1e-15);
+    assert_relative!(back, d, 1e-15);
     Ok(())
 }
 

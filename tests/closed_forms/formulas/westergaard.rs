@@ -1,8 +1,9 @@
 //! A wave in one direction on a half-space (Westergaard).
 
-use approx::assert_relative_eq;
+use approx::assert_abs_diff_eq;
 use asperity::Error;
 use asperity::reference::{HertzLine, Westergaard};
+use asperity_testing::assert_relative;
 use std::f64::consts::PI;
 
 use super::quadrature::{derivative, integrate};
@@ -21,10 +22,10 @@ fn pressure_averages_to_the_mean_pressure() -> Result<(), Error> {
         let a = wave.contact_half_width(mean);
         let sum = integrate(|x| wave.pressure(x, mean), -a, a);
         // Accuracy of the quadrature.
-        assert_relative_eq!(sum / wave.wavelength(), mean, epsilon = 0.0, max_relative = 1e-12);
+        assert_relative!(sum / wave.wavelength(), mean, 1e-12);
         let back = wave.mean_pressure_at_half_width(a);
         // A few rounding errors: where arcsin √P loses digits, sin² is flat and does not miss them.
-        assert_relative_eq!(back, mean, epsilon = 0.0, max_relative = 1e-14);
+        assert_relative!(back, mean, 1e-14);
     }
     Ok(())
 }
@@ -39,7 +40,7 @@ fn gap_averages_to_the_mean_gap() -> Result<(), Error> {
         let found = sum / wave.wavelength() / wave.amplitude();
         // Rounding of gaps that are differences of heights of order D.
         let expected = wave.mean_gap(mean) / wave.amplitude();
-        assert_relative_eq!(found, expected, epsilon = 1e-14);
+        assert_abs_diff_eq!(found, expected, epsilon = 1e-14);
     }
     Ok(())
 }
@@ -62,7 +63,7 @@ fn harmonics_of_the_gap_are_those_of_the_pressure() -> Result<(), Error> {
             let shape = if n == 1 { -wave.amplitude() } else { 0.0 };
             let displacement = 2.0 * pressure / (wave.e_star() * q);
             // Accuracy of the quadrature, in units of D.
-            assert_relative_eq!(
+            assert_abs_diff_eq!(
                 gap / wave.amplitude(),
                 (shape + displacement) / wave.amplitude(),
                 epsilon = 1e-13
@@ -81,15 +82,15 @@ fn stiffness_and_energy_follow_from_the_mean_gap() -> Result<(), Error> {
         let compliance = -derivative(|p| wave.mean_gap(p), mean);
         // The rounding of the gap, 1e-16 D, over steps of 1e-3 p*, against D ln(1/P)/p* ≥ 0.1.
         let stiffness = wave.interfacial_stiffness(mean);
-        assert_relative_eq!(compliance * stiffness, 1.0, epsilon = 0.0, max_relative = 1e-11);
+        assert_relative!(compliance * stiffness, 1.0, 1e-11);
         let work = integrate(|p| p / wave.interfacial_stiffness(p), 0.0, mean);
-        assert_relative_eq!(work, wave.energy(mean), epsilon = 0.0, max_relative = 1e-13);
+        assert_relative!(work, wave.energy(mean), 1e-13);
     }
     let work = integrate(|p| p / wave.interfacial_stiffness(p), 0.0, full);
-    assert_relative_eq!(work, wave.energy(full), epsilon = 0.0, max_relative = 1e-13);
+    assert_relative!(work, wave.energy(full), 1e-13);
     // Complete contact stores half of pressure times displacement of a cosine.
     let cosine = 0.25 * full * wave.amplitude();
-    assert_relative_eq!(wave.energy(full), cosine, epsilon = 0.0, max_relative = 1e-15);
+    assert_relative!(wave.energy(full), cosine, 1e-15);
     Ok(())
 }
 
@@ -103,14 +104,9 @@ fn light_contact_is_hertzian() -> Result<(), Error> {
     let load = mean * wave.wavelength();
     let a = wave.contact_half_width(mean);
     // The difference is of the order of P.
-    assert_relative_eq!(a, line.half_width(load), epsilon = 0.0, max_relative = 1e-8);
+    assert_relative!(a, line.half_width(load), 1e-8);
     let x = 0.6 * a;
-    assert_relative_eq!(
-        wave.pressure(x, mean),
-        line.pressure(x, load),
-        epsilon = 0.0,
-        max_relative = 2e-8
-    );
+    assert_relative!(wave.pressure(x, mean), line.pressure(x, load), 2e-8);
     Ok(())
 }
 
@@ -129,7 +125,7 @@ fn no_load_leaves_the_wave_as_it_is() -> Result<(), Error> {
         for i in 1..8 {
             let x = 0.3 * f64::from(i) * period;
             let initial = d * (1.0 - (2.0 * PI * x / period).cos());
-            assert_relative_eq!(wave.gap(x, mean) / d, initial / d, epsilon = 1e-14);
+            assert_abs_diff_eq!(wave.gap(x, mean) / d, initial / d, epsilon = 1e-14);
         }
     }
     Ok(())
@@ -149,13 +145,13 @@ fn complete_contact_and_beyond() -> Result<(), Error> {
         assert_eq!(wave.gap(0.5 * period, mean), 0.0);
         for x in [0.0, 0.2 * period, 0.5 * period, 7.3 * period] {
             let expected = mean + full * (2.0 * PI * x / period).cos();
-            assert_relative_eq!(wave.pressure(x, mean) / full, expected / full, epsilon = 1e-13);
+            assert_abs_diff_eq!(wave.pressure(x, mean) / full, expected / full, epsilon = 1e-13);
         }
     }
     // Just below, the same to the order of √(1 − P).
     let below = wave.pressure(0.1 * period, full * (1.0 - 1e-12));
     let at = wave.pressure(0.1 * period, full);
-    assert_relative_eq!(below, at, epsilon = 0.0, max_relative = 1e-11);
+    assert_relative!(below, at, 1e-11);
     assert_eq!(wave.mean_pressure_at_half_width(period), full);
     Ok(())
 }
@@ -168,8 +164,8 @@ fn edge_of_the_contact() -> Result<(), Error> {
         let a = wave.contact_half_width(mean);
         let scale = wave.full_contact_pressure();
         // One rounding of a beside the edge is √ε of pressure, but nothing of the gap.
-        assert_relative_eq!(wave.pressure(a, mean) / scale, 0.0, epsilon = 1e-7);
-        assert_relative_eq!(wave.gap(a, mean) / wave.amplitude(), 0.0, epsilon = 1e-15);
+        assert_abs_diff_eq!(wave.pressure(a, mean) / scale, 0.0, epsilon = 1e-7);
+        assert_abs_diff_eq!(wave.gap(a, mean) / wave.amplitude(), 0.0, epsilon = 1e-15);
         assert_eq!(wave.pressure(1.001 * a, mean), 0.0);
         assert!(wave.pressure(0.999 * a, mean) > 0.0);
     }
