@@ -57,8 +57,7 @@ impl CompleteElliptic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use approx::assert_abs_diff_eq;
-    use asperity_testing::assert_relative;
+    use approx::assert_relative_eq;
     use std::f64::consts::FRAC_PI_2;
 
     /// The defining integrals by the midpoint rule, which converges geometrically for these smooth
@@ -85,9 +84,9 @@ mod tests {
             let (first, second, log_ratio) = by_midpoint(complement);
             let agm = CompleteElliptic::from_log_complement(complement.ln());
             // Rounding of sums of 2000 terms.
-            assert_relative!(agm.first, first, 1e-13);
-            assert_relative!(agm.second, second, 1e-13);
-            assert_abs_diff_eq!(agm.log_ratio, log_ratio, epsilon = 1e-13);
+            assert_relative_eq!(agm.first, first, epsilon = 0.0, max_relative = 1e-13);
+            assert_relative_eq!(agm.second, second, epsilon = 0.0, max_relative = 1e-13);
+            assert_relative_eq!(agm.log_ratio, log_ratio, epsilon = 1e-13);
         }
     }
 
@@ -100,7 +99,7 @@ mod tests {
             let other = CompleteElliptic::from_log_complement(k.ln());
             let sum = one.first * other.second + one.second * other.first - one.first * other.first;
             // A few rounding errors of terms of size up to 13.
-            assert_relative!(sum, FRAC_PI_2, 2e-14);
+            assert_relative_eq!(sum, FRAC_PI_2, epsilon = 0.0, max_relative = 2e-14);
         }
     }
 
@@ -110,11 +109,11 @@ mod tests {
         assert_eq!((circle.first, circle.second, circle.log_ratio), (FRAC_PI_2, FRAC_PI_2, 0.0));
         // ln(D/B) = m/4 + O(m²), with every digit although m is only 2e-12: the rest is 1e-24.
         let nearly = CompleteElliptic::from_log_complement(-1e-12);
-        assert_relative!(nearly.log_ratio, 0.5e-12, 1e-11);
+        assert_relative_eq!(nearly.log_ratio, 0.5e-12, epsilon = 0.0, max_relative = 1e-11);
         // K → ln(4/k′), E → 1, to O(k′² ln k′) = 1e-19; the rounding of E is that of K.
         let slender = CompleteElliptic::from_log_complement(1e-10_f64.ln());
-        assert_relative!(slender.first, 4e10_f64.ln(), 1e-15);
-        assert_relative!(slender.second, 1.0, 2e-14);
+        assert_relative_eq!(slender.first, 4e10_f64.ln(), epsilon = 0.0, max_relative = 1e-15);
+        assert_relative_eq!(slender.second, 1.0, epsilon = 0.0, max_relative = 2e-14);
     }
 
     #[test]
