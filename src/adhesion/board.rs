@@ -335,7 +335,7 @@ impl Board {
     }
 
     /// Lets a node part. Where soft nodes would not be stable then, those whose traction it would change most are held
-    /// first.
+    /// first. Their gaps open with its own, but where pulls may open gaps some close.
     fn part(&mut self, place: usize) {
         let mut part = self.stiffness(place);
         while part.is_nan() || part <= LEAST_PIVOT {
@@ -345,8 +345,9 @@ impl Board {
             let Some(row) = most else {
                 break;
             };
+            let way = if column[row] < 0.0 { 1.0 } else { -1.0 };
             self.harden(row);
-            self.hold(row, -self.rows[row].pressure, -1.0);
+            self.hold(row, -self.rows[row].pressure, way);
             part = self.stiffness(place);
         }
         self.note_pivot(part);

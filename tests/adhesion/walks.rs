@@ -3,12 +3,16 @@
 
 use std::cell::Cell;
 
-use asperity::adhesion::{Adhesion, AdhesiveFields, AdhesivePath, AdhesiveState, NodeState};
-use asperity::surface::{Amplitude, Axis, SelfAffine};
+use asperity::adhesion::{
+    Adhesion, AdhesiveEvent, AdhesiveFields, AdhesivePath, AdhesiveState, NodeState,
+};
+use asperity::kernel::{Base, Layer, Layered, LayeredBody};
+use asperity::surface::{Amplitude, Axis, HeightMap, SelfAffine};
 use asperity::{
     Boussinesq, ContactGrowth, ContactTarget, Grid, InfluenceKernel, KernelTable,
     PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
+use asperity_testing::surfaces::scattered;
 use nalgebra::DVector;
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
@@ -207,4 +211,32 @@ fn closed_loops_restore_the_state() {
         assert!(all.is_ok(), "{:?}: {all:?}", kernel.origin());
         assert!(closed.get() >= floor, "{:?}: {}", kernel.origin(), closed.get());
     }
+}
+
+/// Where a pull may open gaps elsewhere, a node that parts while the approach grows may close others.
+#[test]
+fn nodes_part_and_others_close() {
+    let grid = Grid::new(32, 1, 1.0, 1.0).unwrap();
+    let layer = Layer { youngs_modulus: 1.0, poissons_ratio: 0.49, thickness: 8.0 };
+    let sheet = LayeredBody::new(&[layer], Base::Rigid).unwrap();
+    let kernel = Layered::periodic(grid, sheet).unwrap();
+    assert_eq!(kernel.contact_growth(), ContactGrowth::Monotone);
+    let table = KernelTable::new(&kernel).unwrap();
+    let unit = Adhesion::work(1e-3).range(1.0).on(&kernel).unwrap().resolution();
+    let range: f64 = 2.4;
+    let law = Adhesion::work(1e-3 * 0.45 / unit * range.powi(2)).range(range);
+    let mut parted = 0;
+    for seed in 0..20 {
+        let surface = HeightMap::new(scattered(grid.shape(), 10_007, seed) / 10_007.0).unwrap();
+        let mut path = AdhesivePath::builder(&surface, &kernel, law).build().unwrap();
+        path.load_to(ContactTarget::Approach(-0.5)).unwrap();
+        let loading = path.run().unwrap();
+        let events = loading.states().iter().map(|state| state.event);
+        parted += events.filter(|&event| event == AdhesiveEvent::Part).count();
+        for to in [-1.2, 1.0] {
+            let state = go(&mut path, to);
+            check_state(&path, &table, &state);
+        }
+    }
+    assert!(parted > 30, "{parted}");
 }
