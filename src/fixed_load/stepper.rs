@@ -10,6 +10,7 @@ use super::plateau::Plateau;
 use super::settings::Settings;
 use super::solution::{FixedLoadSolution, SolverEffort};
 use super::tangent::Tangent;
+use super::tuning::{DECIDED, LOOSEST_DECIDED};
 use crate::contact::ContactState;
 use crate::hardness::Hardness;
 use crate::parallel::inside;
@@ -19,6 +20,8 @@ use crate::{Error, Grid};
 #[derive(Debug)]
 pub(super) struct Stepper<'a> {
     settings: &'a Settings,
+    /// Greatest error: that of the settings, or less where that does not decide which nodes yield.
+    tolerance: f64,
     hierarchy: &'a mut Hierarchy,
     hardness: Option<&'a Hardness>,
     continuation: Continuation,
@@ -38,7 +41,9 @@ impl<'a> Stepper<'a> {
         // What was spent before, if that ended with an error, is no part of the next solution.
         hierarchy.take_convolutions();
         let continuation = Continuation::default();
-        Self { settings, hierarchy, hardness, continuation, last: None, yielded: Vec::new() }
+        let tolerance = settings.tolerance;
+        let (last, yielded) = (None, Vec::new());
+        Self { settings, tolerance, hierarchy, hardness, continuation, last, yielded }
     }
 
     /// Begins at a solution.
@@ -137,7 +142,7 @@ impl<'a> Stepper<'a> {
     /// When a solution on the finest grid is good enough.
     fn criteria(&self, prescribed: Prescribed) -> Criteria {
         Criteria {
-            tolerance: self.settings.tolerance,
+            tolerance: self.tolerance,
             floor: self.finest().least_length(prescribed),
             length: f64::INFINITY,
             max_iterations: self.settings.max_iterations,
@@ -188,8 +193,28 @@ impl<'a> Stepper<'a> {
         self.solution(load, iterations)
     }
 
-    /// Contact with a hardness: the number of iterations, and which nodes have yielded.
+    /// Contact with a hardness: the number of iterations, and which nodes have yielded. Nodes that yield and recover in
+    /// turns within a loose tolerance do not within a stricter one.
     fn yield_to(
+        &mut self,
+        hardness: &'a Hardness,
+        prescribed: Prescribed,
+        sum: f64,
+    ) -> Result<(usize, Vec<bool>), Error> {
+        let mut found = self.yield_within_tolerance(hardness, prescribed, sum);
+        while let Err(Error::NoConvergence { iterations, .. }) = found
+            && iterations < self.settings.max_iterations
+            && self.tolerance > LOOSEST_DECIDED
+        {
+            self.tolerance *= DECIDED;
+            found = self.yield_within_tolerance(hardness, prescribed, sum).or(found);
+        }
+        self.tolerance = self.settings.tolerance;
+        found
+    }
+
+    /// The same within the present tolerance.
+    fn yield_within_tolerance(
         &mut self,
         hardness: &'a Hardness,
         prescribed: Prescribed,

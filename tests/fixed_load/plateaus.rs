@@ -283,3 +283,25 @@ fn approaches_about_full_contact() {
         }
     }
 }
+
+/// A tolerance that lets nodes yield and recover in turns is no reason to give up.
+#[test]
+fn loose_tolerances_are_decided() {
+    for seed in 0..6 {
+        for n in [8, 16] {
+            let grid = Grid::square(n, n as f64 * 1e-5).unwrap();
+            let surface = white(grid.shape(), seed);
+            let hardness = 0.2 * surface.rms_gradient(&grid).unwrap() * E_STAR;
+            for kernel in kernels(grid) {
+                for tolerance in [0.1, 0.03, 0.01] {
+                    let builder = FixedLoadSolver::builder(&surface, &*kernel).hardness(hardness);
+                    let mut solver = builder.tolerance(tolerance).build().unwrap();
+                    for fraction in [0.1, 0.3, 0.5, 0.6, 0.75, 0.9] {
+                        let found = solver.solve_target(ContactTarget::AreaFraction(fraction));
+                        assert!(found.is_ok(), "{seed} {n} {tolerance} {fraction}: {found:?}");
+                    }
+                }
+            }
+        }
+    }
+}
