@@ -21,6 +21,8 @@ pub(super) struct ActiveSet<'a> {
     stalled: usize,
     /// Whether the last round ended with the solution on its set, and not where a node lost its pressure.
     is_solved: bool,
+    /// Whether all nodes that joined last lost their pressure at once.
+    is_blocked: bool,
 }
 
 impl<'a> ActiveSet<'a> {
@@ -34,6 +36,7 @@ impl<'a> ActiveSet<'a> {
             least: f64::INFINITY,
             stalled: 0,
             is_solved: true,
+            is_blocked: false,
         }
     }
 
@@ -158,17 +161,30 @@ impl<'a> ActiveSet<'a> {
     /// A round of the primal active-set method: nodes that overlap join the solution on a set, and pressures go towards
     /// the new solution as far as the energy falls. It is less with every solution, so that no set comes again with
     /// one; and between two of them nodes only leave (Nocedal and Wright, Numerical Optimization, 2006, 16.5, where
-    /// they do one at a time).
+    /// they do one at a time). Of nodes that join together some may have tension from the start, so that the energy
+    /// falls nowhere: then the one that overlaps most joins alone, which does not.
     fn cautious_round(&mut self, criteria: Criteria, deepest: f64) -> Result<Errors, Error> {
         let joins = self.is_solved;
+        let before = self.level.iterate.pressure.clone();
+        let least_gap = self.is_blocked.then(|| self.least_gap_without_pressure());
         self.level.choose_contact(|node, pressure, total_gap| {
-            pressure[node] > 0.0 || (joins && total_gap[node] < deepest)
+            let may_join = joins && least_gap.is_none_or(|least| total_gap[node] <= least);
+            pressure[node] > 0.0 || (may_join && total_gap[node] < deepest)
         })?;
         let errors = self.descend(criteria, |descent, progress| {
             descent.run_downhill(INNER_DOWNHILL, progress)
         })?;
         self.is_solved = errors.residual < f64::INFINITY;
+        if joins {
+            self.is_blocked = !self.is_solved && self.level.iterate.pressure == before;
+        }
         Ok(errors)
+    }
+
+    fn least_gap_without_pressure(&self) -> f64 {
+        let Iterate { pressure, total_gap, .. } = &self.level.iterate;
+        let free = pressure.iter().zip(total_gap).filter(|(pressure, _)| **pressure <= 0.0);
+        free.map(|(_, gap)| *gap).fold(f64::INFINITY, f64::min)
     }
 
     /// Goes a way down on the set that was chosen, which is empty where pressures have cancelled.

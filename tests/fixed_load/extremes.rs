@@ -1,5 +1,6 @@
 //! From a single node to far beyond full contact, and tolerances from coarse to impossible.
 
+use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::updater::RecursiveCholesky;
 use asperity::{
@@ -167,5 +168,26 @@ fn flat_but_for_rounding() {
                 assert!(effort.iterations < 3 && effort.coarse_convolutions < 20.0, "{effort:?}");
             }
         }
+    }
+}
+
+/// A stiff coat on cells far longer than wide: rows of nodes overlap together, and some of them lose their pressure as
+/// soon as they join.
+#[test]
+fn nodes_that_join_in_vain_do_so_one_by_one() {
+    let grid = Grid::new(4, 4, 0.028, 5.2).unwrap();
+    let coat = Layer { youngs_modulus: 97.6, poissons_ratio: 0.19, thickness: 0.05 };
+    let base = Base::HalfSpace { youngs_modulus: 0.0993, poissons_ratio: 0.045 };
+    let kernel = Layered::periodic(grid, LayeredBody::new(&[coat], base).unwrap()).unwrap();
+    let heights = [
+        2.128e-6, 2.674e-6, 2.884e-6, 2.879e-6, 1.636e-6, 2.502e-6, 2.905e-6, 3.070e-6, 1.499e-6,
+        2.090e-6, 2.970e-6, 3.572e-6, 1.278e-6, 1.989e-6, 2.729e-6, 3.342e-6,
+    ];
+    let surface = HeightMap::new(DMatrix::from_column_slice(4, 4, &heights)).unwrap();
+    let mut solver = FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-6).build().unwrap();
+    // From six nodes to one.
+    for k in 0..400 {
+        let solution = solver.solve(3e-7 * 10_f64.powf(-1.2 * f64::from(k) / 400.0)).unwrap();
+        check(&solver, &solution, 1e-6);
     }
 }
