@@ -166,9 +166,9 @@ impl<'a> ActiveSet<'a> {
     fn cautious_round(&mut self, criteria: Criteria, deepest: f64) -> Result<Errors, Error> {
         let joins = self.is_solved;
         let before = self.level.iterate.pressure.clone();
-        let least_gap = self.is_blocked.then(|| self.least_gap_without_pressure());
+        let alone = self.is_blocked.then(|| self.greatest_overlap()).flatten();
         self.level.choose_contact(|node, pressure, total_gap| {
-            let may_join = joins && least_gap.is_none_or(|least| total_gap[node] <= least);
+            let may_join = joins && alone.is_none_or(|alone| node == alone);
             pressure[node] > 0.0 || (may_join && total_gap[node] < deepest)
         })?;
         let errors = self.descend(criteria, |descent, progress| {
@@ -181,10 +181,11 @@ impl<'a> ActiveSet<'a> {
         Ok(errors)
     }
 
-    fn least_gap_without_pressure(&self) -> f64 {
+    /// The node without pressure that overlaps most.
+    fn greatest_overlap(&self) -> Option<usize> {
         let Iterate { pressure, total_gap, .. } = &self.level.iterate;
-        let free = pressure.iter().zip(total_gap).filter(|(pressure, _)| **pressure <= 0.0);
-        free.map(|(_, gap)| *gap).fold(f64::INFINITY, f64::min)
+        let free = (0..pressure.len()).filter(|&node| pressure[node] <= 0.0);
+        free.min_by(|&a, &b| total_gap[a].total_cmp(&total_gap[b]))
     }
 
     /// Goes a way down on the set that was chosen, which is empty where pressures have cancelled.
