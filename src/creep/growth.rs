@@ -64,7 +64,8 @@ impl Kernel {
     /// `∫ R(left + to − z) f(z) dz` from `from` to `to`, of a rate f: each pair of exponentials in closed form, without
     /// differences of nearly equal ones.
     fn over(&self, rate: &ExponentialSum, (from, to): (f64, f64), left: f64) -> f64 {
-        let length = to - from;
+        // Far from 0 the sum of two times may be later than what they are parts of.
+        let (length, left) = (to - from, left.max(0.0));
         let mean = |z: f64| Weights::of(z).mean;
         let constant = rate.constant + rate.linear * from;
         let decaying = |(c, time): &(f64, f64)| (c * (-from / time).exp(), *time);

@@ -221,3 +221,22 @@ fn pressures_carry_the_load_after_any_time() {
         }
     }
 }
+
+/// A ramp so long that its times are known to a minute only, which is far longer than a body takes to relax.
+#[test]
+fn pressures_carry_the_load_of_a_ramp_at_late_times() {
+    let history = history(24);
+    let bed = Bed::new(&history).unwrap();
+    let (start, end) = (1.1e11, 7.5e17);
+    let last = bed.approaches().last().unwrap();
+    let ramp = PiecewiseLinear::new([(start, 0.0), (end, *last)]).unwrap();
+    let body = Prony::relaxation(0.0, &[(1e-3, 0.5), (1e8, 0.5)]).unwrap();
+    let pressed = Relaxation::new(&bed, &body, &ramp).unwrap();
+    for k in 1..4000 {
+        let time = start + end * 10_f64.powf(f64::from(k) / 1000.0 - 4.0);
+        let load = pressed.at(time).unwrap().load;
+        let carried = pressed.pressure(time, usize::MAX).unwrap().load();
+        // A minute of 10⁸ s.
+        assert!((carried / load - 1.0).abs() < 1e-6, "{time} s: {carried} {load}");
+    }
+}
