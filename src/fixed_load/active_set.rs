@@ -21,7 +21,7 @@ pub(super) struct ActiveSet<'a> {
     stalled: usize,
     /// Whether the last round ended with the solution on its set, and not where a node lost its pressure.
     is_solved: bool,
-    /// Whether all nodes that joined last lost their pressure at once.
+    /// Whether no pressure changed when nodes joined last, since some of them had tension from the start.
     is_blocked: bool,
 }
 
@@ -161,8 +161,8 @@ impl<'a> ActiveSet<'a> {
     /// A round of the primal active-set method: nodes that overlap join the solution on a set, and pressures go towards
     /// the new solution as far as the energy falls. It is less with every solution, so that no set comes again with
     /// one; and between two of them nodes only leave (Nocedal and Wright, Numerical Optimization, 2006, 16.5, where
-    /// they do one at a time). Of nodes that join together some may have tension from the start, so that the energy
-    /// falls nowhere: then the one that overlaps most joins alone, which does not.
+    /// they do one at a time). Of nodes that join together some may have tension from the start, and the energy falls
+    /// nowhere on that way. Then the node that overlaps most joins alone: its pressure grows, and the energy falls.
     fn cautious_round(&mut self, criteria: Criteria, deepest: f64) -> Result<Errors, Error> {
         let joins = self.is_solved;
         let before = self.level.iterate.pressure.clone();
