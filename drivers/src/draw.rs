@@ -39,6 +39,16 @@ impl<'a> Draw<'a> {
         least + (most - least) * self.unit()
     }
 
+    /// A number from `least` to `most`, or once in eight times from there to `limit`. It takes the bytes of
+    /// [`Draw::between`].
+    pub(crate) fn mostly(&mut self, least: f64, most: f64, limit: f64) -> f64 {
+        let unit = self.unit();
+        match (65536.0 * unit) as u32 % 8 {
+            7 => most + (limit - most) * unit,
+            _ => least + (most - least) * unit,
+        }
+    }
+
     /// A positive number whose decimal logarithm is between these.
     pub(crate) fn decades(&mut self, least: f64, most: f64) -> f64 {
         10_f64.powf(self.between(least, most))

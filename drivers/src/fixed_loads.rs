@@ -54,7 +54,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         return Ok(Tally::default());
     };
     let settings = Settings {
-        tolerance: draw.decades(-12.0, -3.0),
+        tolerance: 10_f64.powf(draw.mostly(-12.0, -3.0, -1.0)),
         nested: !draw.once_in(3),
         stiffness: !draw.once_in(3),
     };

@@ -180,10 +180,10 @@ pub(crate) fn make(
     })
 }
 
-/// From a tenth of a cell to a hundred of them.
+/// From a tenth of a cell to a hundred of them; some are all but incompressible.
 fn layer(draw: &mut Draw<'_>, grid: &Grid, youngs_modulus: f64) -> Layer {
     let thickness = grid.cell_area().sqrt() * draw.decades(-1.0, 2.0);
-    Layer { youngs_modulus, poissons_ratio: draw.between(0.0, 0.45), thickness }
+    Layer { youngs_modulus, poissons_ratio: draw.mostly(0.0, 0.45, 0.5), thickness }
 }
 
 /// A layer on a rigid base or on a body that is stiffer.
