@@ -80,6 +80,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
             error,
             inverse,
             greatest: [0.0; 2],
+            rises: true,
         };
         trial.walk(draw, &scale).map_err(context)?
     };
@@ -201,6 +202,8 @@ struct Trial<'a, 'b> {
     inverse: f64,
     /// The greatest effective load and lengths so far: what is left of them has their rounding.
     greatest: [f64; 2],
+    /// Whether the approach was prescribed in all steps so far, and never fell.
+    rises: bool,
 }
 
 impl Trial<'_, '_> {
@@ -268,6 +271,11 @@ impl Trial<'_, '_> {
             }
         };
         self.check(&before.0, &state, duration, control)?;
+        self.rises &= matches!(control, Control::Approach(a) if a >= before.0.approach);
+        ensure!(
+            !self.rises || state.contact_nodes >= before.0.contact_nodes,
+            "contact was lost: {before:?} became {state:?}"
+        );
         if self.contact.halvings() > 0 {
             return Ok(false);
         }

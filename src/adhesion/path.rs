@@ -440,8 +440,7 @@ impl AdhesivePath {
         let next = plain.next()?;
         let is_at_target = plain.is_at_target();
         let Some((event, node, contact)) = next else {
-            let ends = [AdhesiveEnd::NoMoreEvents, AdhesiveEnd::Target];
-            self.end = Some(ends[usize::from(is_at_target)]);
+            self.end = Some(if is_at_target { AdhesiveEnd::Target } else { self.last_end() });
             return Ok(None);
         };
         let grid = self.grid();
@@ -509,6 +508,16 @@ impl AdhesivePath {
         Ok(self.last)
     }
 
+    /// How a branch ends on which nothing more happens.
+    fn last_end(&self) -> AdhesiveEnd {
+        match self.last {
+            Some(last) if self.targets.are_met(&last.contact, self.direction) => {
+                AdhesiveEnd::Target
+            }
+            _ => AdhesiveEnd::NoMoreEvents,
+        }
+    }
+
     /// Follows the events of one window.
     fn window(&mut self) -> Result<(), Error> {
         let sign = self.direction.sign();
@@ -536,7 +545,7 @@ impl AdhesivePath {
         let size = self.window_size.unwrap_or(automatic);
         let found = window::follow(&mut self.body, &self.front, &field, &view, size)?;
         let Some(played) = found else {
-            self.end = Some(AdhesiveEnd::NoMoreEvents);
+            self.end = Some(self.last_end());
             return Ok(());
         };
         let Played { front, field, moments, changes, totals, jump, is_at_limit, .. } = played;

@@ -110,10 +110,10 @@ impl Plain {
                 return Ok(Some((AdhesiveEvent::Limit, state.node, state.contact)));
             }
             self.touches.push(state);
+        } else if self.has_area() {
+            self.is_at_end = true;
+            return Ok(None);
         } else if self.now == self.touches.len() && !self.touch()? {
-            // In full contact the elastic path ends, and all areas are reached.
-            let is_area = |target: &ContactTarget| matches!(target, ContactTarget::AreaFraction(_));
-            self.is_at_end = self.targets.iter().flatten().any(is_area);
             return Ok(None);
         }
         let next = self.touches[self.now].contact;
@@ -123,6 +123,18 @@ impl Plain {
         let state = self.touches[self.now];
         self.now += 1;
         Ok(Some((AdhesiveEvent::Touch, state.node, state.contact)))
+    }
+
+    /// Whether an area that is asked for is there: with its last touch, as on a path that has not turned.
+    fn has_area(&self) -> bool {
+        let nodes = self.present.map_or(0, |present| present.contact_nodes);
+        let grid = self.path.grid();
+        self.targets.iter().flatten().any(|target| match *target {
+            ContactTarget::AreaFraction(fraction) => {
+                grid.nodes_in(fraction).is_ok_and(|fit| nodes >= fit)
+            }
+            _ => false,
+        })
     }
 
     fn release(&mut self) -> Result<Option<Happened>, Error> {
@@ -196,10 +208,9 @@ fn is_beyond(state: &ContactState, target: &ContactTarget, grid: &Grid, way: f64
         ContactTarget::MeanPressure(p) => is_past(way * (state.load - p * grid.nominal_area())),
         ContactTarget::Approach(approach) => is_past(way * (state.approach - approach)),
         ContactTarget::MeanGap(gap) => is_past(way * (gap - state.mean_gap)),
-        ContactTarget::AreaFraction(fraction) => grid.nodes_in(fraction).is_ok_and(|nodes| {
-            let (nodes, contact) = (nodes as f64, state.contact_nodes as f64);
-            // On the way down the end is where the last of these nodes touched: its pressure is 0 there.
-            if way > 0.0 { contact > nodes } else { contact <= nodes }
-        }),
+        // On the way down the end is where the last of these nodes touched: its pressure is 0 there.
+        ContactTarget::AreaFraction(fraction) => {
+            way < 0.0 && grid.nodes_in(fraction).is_ok_and(|nodes| state.contact_nodes <= nodes)
+        }
     }
 }

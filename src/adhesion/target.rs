@@ -200,6 +200,18 @@ impl Targets {
         self.is_reached(state.contact_nodes, direction) || self.targets.iter().any(is_beyond)
     }
 
+    /// Whether a state behind which nothing happens is at a target: one that was asked for in full contact has no state of
+    /// its own.
+    pub(super) fn are_met(&self, state: &ContactState, direction: Direction) -> bool {
+        self.is_full(state.contact_nodes, direction)
+            || self.targets.iter().any(|target| match *target {
+                ContactTarget::Load(load) | ContactTarget::MeanPressure(load) => state.load == load,
+                ContactTarget::Approach(approach) => state.approach == approach,
+                ContactTarget::MeanGap(gap) => state.mean_gap == gap,
+                ContactTarget::AreaFraction(_) => false,
+            })
+    }
+
     /// Gives a state at a target the very value that was asked for; the units are those of [`Measured`].
     pub(super) fn place(&self, state: &mut ContactState, [force, length]: [f64; 2]) {
         let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= NEAR * unit;

@@ -310,7 +310,8 @@ impl<'a> ViscoelasticBed<'a> {
         Ok(())
     }
 
-    /// Makes the step if no pressure becomes negative by it, and returns whether it has.
+    /// Makes the step if no pressure becomes negative by it, and no contact is lost to an approach that does not fall.
+    /// Returns whether it has.
     fn attempt(&mut self, duration: f64, control: Control) -> Result<bool, Error> {
         let step = self.prepare(duration);
         let time = self.state.time + duration;
@@ -329,6 +330,13 @@ impl<'a> ViscoelasticBed<'a> {
         };
         let path_ends = self.bed.last_load();
         let front = front.ok_or(CreepError::BedEnds { time, path_ends })?;
+        let falls = match control {
+            Control::Load(_) => true,
+            Control::Approach(approach) => approach < self.state.approach,
+        };
+        if front.separation > 0.0 && !falls && self.state.contact_nodes > 0 {
+            return Ok(false);
+        }
         self.commit(&step, time, control, front);
         Ok(true)
     }
@@ -397,9 +405,11 @@ impl<'a> ViscoelasticBed<'a> {
         let kept = self.elements.iter().zip(&self.history);
         let kept: f64 = kept.map(|(element, history)| element.approach * history).sum();
         let mut left = approach - kept;
-        if left <= 0.0 {
+        if left < -ROUNDING * approach.abs() {
             return Some(Front { element: 0, force: 0.0, separation: -left });
         }
+        // A body that has flowed to the approach at which it is held keeps its dent, and no load is left.
+        left = left.max(0.0);
         // In full contact of a periodic half-space mean planes cannot approach: the load is then the least there is.
         let bounded = self.bounded();
         let is_rigid = self.elements.get(bounded).is_some_and(|element| element.approach == 0.0);

@@ -79,6 +79,15 @@ impl Sought {
         }
     }
 
+    /// How far a state is off: for nodes, a part of their number.
+    fn distance(self, state: &ContactState, carrying: usize) -> f64 {
+        let beyond = self.beyond(state, carrying);
+        match self {
+            Self::Nodes(_) => beyond.exp_m1().abs(),
+            _ => beyond.abs(),
+        }
+    }
+
     /// Whether a state, whose gaps are exact to `error`, is the one sought.
     fn is_found(self, state: &ContactState, carrying: usize, error: f64) -> bool {
         match self {
@@ -210,7 +219,7 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         }
         previous = Some((x, beyond));
         // Where nodes just touch, rounding decides how many. Of loads as good the last is nearest to where these touch.
-        let rank = (carrying < state.contact_nodes, beyond.abs());
+        let rank = (carrying < state.contact_nodes, sought.distance(state, carrying));
         if nearest.as_ref().is_none_or(|(best, _)| rank <= *best) {
             nearest = Some((rank, solution));
         }

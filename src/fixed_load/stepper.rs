@@ -29,6 +29,8 @@ pub(super) struct Stepper<'a> {
     last: Option<ContactState>,
     /// The nodes that have yielded there; none without a hardness.
     yielded: Vec<bool>,
+    /// Steps of conjugate gradients on the finest grid towards the next state, in vain or not.
+    iterations: usize,
 }
 
 impl<'a> Stepper<'a> {
@@ -42,8 +44,8 @@ impl<'a> Stepper<'a> {
         hierarchy.take_convolutions();
         let continuation = Continuation::default();
         let tolerance = settings.tolerance;
-        let (last, yielded) = (None, Vec::new());
-        Self { settings, tolerance, hierarchy, hardness, continuation, last, yielded }
+        let (last, yielded, iterations) = (None, Vec::new(), 0);
+        Self { settings, tolerance, hierarchy, hardness, continuation, last, yielded, iterations }
     }
 
     /// Begins at a solution.
@@ -150,15 +152,19 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Solves on the finest grid from its iterate, and returns the number of iterations: see [`ActiveSet::solve`].
-    fn solve(&mut self, prescribed: Prescribed, prediction: bool) -> Result<usize, Error> {
+    /// Solves on the finest grid from its iterate: see [`ActiveSet::solve`].
+    fn solve(&mut self, prescribed: Prescribed, prediction: bool) -> Result<(), Error> {
         let criteria = self.criteria(prescribed);
         let finest = &mut self.hierarchy.finest;
-        inside(|| ActiveSet::new(finest, prescribed, criteria).solve(prediction))
+        let solved = inside(|| ActiveSet::new(finest, prescribed, criteria).solve(prediction));
+        if let Ok(iterations) | Err(Error::NoConvergence { iterations, .. }) = &solved {
+            self.iterations += iterations;
+        }
+        solved.map(drop)
     }
 
     /// The same from coarser grids.
-    fn solve_afresh(&mut self, prescribed: Prescribed) -> Result<usize, Error> {
+    fn solve_afresh(&mut self, prescribed: Prescribed) -> Result<(), Error> {
         self.continuation = Continuation::default();
         self.hierarchy.start(prescribed, self.settings)?;
         self.solve(prescribed, false)
@@ -171,46 +177,56 @@ impl<'a> Stepper<'a> {
         sum: f64,
         load: Option<f64>,
     ) -> Result<FixedLoadSolution, Error> {
+        self.iterations = 0;
         if let Some(hardness) = self.hardness {
-            let (iterations, yielded) = self.yield_to(hardness, prescribed, sum)?;
-            self.yielded = yielded;
-            return self.solution(load, iterations);
+            let found = self.yield_to(hardness, prescribed, sum);
+            self.tolerance = self.settings.tolerance;
+            self.yielded = found?;
+            return self.solution(load);
         }
         // After an error the finest grid holds no state.
         let is_near = self.last.take().is_some() && Continuation::reaches(self.finest(), sum);
-        let iterations = if is_near {
+        if is_near {
             self.continuation.predict(&mut self.hierarchy.finest, sum);
             match self.solve(prescribed, true) {
                 // A state is no good start where the next one is nothing like it.
-                Err(Error::NoConvergence { iterations, .. }) => {
-                    iterations + self.solve_afresh(prescribed)?
-                }
+                Err(Error::NoConvergence { .. }) => self.solve_afresh(prescribed)?,
                 solved => solved?,
             }
         } else {
-            self.solve_afresh(prescribed)?
-        };
-        self.solution(load, iterations)
+            self.solve_afresh(prescribed)?;
+        }
+        self.solution(load)
     }
 
-    /// Contact with a hardness: the number of iterations, and which nodes have yielded. Nodes that yield and recover in
-    /// turns within a loose tolerance do not within a stricter one.
+    /// Contact with a hardness: which nodes have yielded. Nodes that yield and recover in turns within a loose
+    /// tolerance do not within a stricter one.
     fn yield_to(
         &mut self,
         hardness: &'a Hardness,
         prescribed: Prescribed,
         sum: f64,
-    ) -> Result<(usize, Vec<bool>), Error> {
-        let mut found = self.yield_within_tolerance(hardness, prescribed, sum);
-        while let Err(Error::NoConvergence { iterations, .. }) = found
-            && iterations < self.settings.max_iterations
-            && self.tolerance > LOOSEST_DECIDED
-        {
-            self.tolerance *= DECIDED;
-            found = self.yield_within_tolerance(hardness, prescribed, sum).or(found);
+    ) -> Result<Vec<bool>, Error> {
+        let mut open = None;
+        loop {
+            let decision = self.yield_within_tolerance(hardness, prescribed, sum);
+            match (decision, open) {
+                (Ok(Decision::Made(yielded)), _) => return Ok(yielded),
+                (Ok(Decision::Open { residual }), _) if self.tolerance > LOOSEST_DECIDED => {
+                    open = open.or(Some(residual));
+                    self.tolerance *= DECIDED;
+                }
+                (Ok(Decision::Open { residual }), None)
+                | (Ok(Decision::Open { .. }) | Err(Error::NoConvergence { .. }), Some(residual)) => {
+                    return Err(Error::NoConvergence {
+                        residual,
+                        tolerance: self.settings.tolerance,
+                        iterations: self.iterations,
+                    });
+                }
+                (Err(error), _) => return Err(error),
+            }
         }
-        self.tolerance = self.settings.tolerance;
-        found
     }
 
     /// The same within the present tolerance.
@@ -219,31 +235,36 @@ impl<'a> Stepper<'a> {
         hardness: &'a Hardness,
         prescribed: Prescribed,
         sum: f64,
-    ) -> Result<(usize, Vec<bool>), Error> {
+    ) -> Result<Decision, Error> {
         if let Some(mut yielded) = self.yielded_before(hardness, prescribed, sum)? {
-            match self.rounds(&mut yielded, prescribed, None) {
-                Ok(iterations) => {
-                    return Ok((iterations, yielded.finish(&mut self.hierarchy.finest)?));
+            match self.rounds(&mut yielded, prescribed, false) {
+                Ok(None) => return self.made(yielded),
+                Ok(Some(_)) | Err(Error::NoConvergence { .. }) => {
+                    yielded.abandon(&mut self.hierarchy.finest);
                 }
                 Err(error) => {
                     yielded.abandon(&mut self.hierarchy.finest);
-                    if !matches!(error, Error::NoConvergence { .. }) {
-                        return Err(error);
-                    }
+                    return Err(error);
                 }
             }
         }
         let mut yielded = Yielded::none(hardness, &self.hierarchy.finest, prescribed);
-        let rounds = self
-            .solve_afresh(prescribed)
-            .and_then(|iterations| self.rounds(&mut yielded, prescribed, Some(iterations)));
-        match rounds {
-            Ok(iterations) => Ok((iterations, yielded.finish(&mut self.hierarchy.finest)?)),
+        let rounds = self.solve_afresh(prescribed);
+        match rounds.and_then(|()| self.rounds(&mut yielded, prescribed, true)) {
+            Ok(None) => self.made(yielded),
+            Ok(Some(residual)) => {
+                yielded.abandon(&mut self.hierarchy.finest);
+                Ok(Decision::Open { residual })
+            }
             Err(error) => {
                 yielded.abandon(&mut self.hierarchy.finest);
                 Err(error)
             }
         }
+    }
+
+    fn made(&mut self, yielded: Yielded<'_>) -> Result<Decision, Error> {
+        Ok(Decision::Made(yielded.finish(&mut self.hierarchy.finest)?))
     }
 
     /// The nodes that had yielded at the last state, with its pressures moved to the sum `sum` on the finest grid.
@@ -268,33 +289,26 @@ impl<'a> Stepper<'a> {
         Yielded::resume(hardness, finest, prescribed, &earlier).map(Some)
     }
 
-    /// Elastic solutions of the nodes that have not yielded, until no more does, behind the first one if that took so
-    /// many iterations.
+    /// Elastic solutions of the nodes that have not yielded, until no more does; the first one may be there. Returns a
+    /// residual if the tolerance does not decide which nodes yield.
     fn rounds(
         &mut self,
         yielded: &mut Yielded<'_>,
         prescribed: Prescribed,
-        first: Option<usize>,
-    ) -> Result<usize, Error> {
-        let mut iterations = first.unwrap_or_default();
-        let mut is_solved = first.is_some();
+        mut is_solved: bool,
+    ) -> Result<Option<f64>, Error> {
         loop {
             let criteria = self.criteria(prescribed);
             let finest = &mut self.hierarchy.finest;
-            let undecided = |residual| Error::NoConvergence {
-                residual,
-                tolerance: criteria.tolerance,
-                iterations,
-            };
             if is_solved {
                 let allowed = criteria.gap_error(finest.iterate.approach);
                 match yielded.revise(finest, allowed)? {
                     Round::Settled => match prescribed {
                         Prescribed::Sum(sum) if yielded.exhaust(finest, sum)? => {}
-                        _ => return Ok(iterations),
+                        _ => return Ok(None),
                     },
                     Round::Changed => {}
-                    Round::Undecided => return Err(undecided(f64::INFINITY)),
+                    Round::Undecided => return Ok(Some(f64::INFINITY)),
                 }
             }
             let rest = match prescribed {
@@ -303,11 +317,8 @@ impl<'a> Stepper<'a> {
                     None => {
                         let overlap = yielded.begin_plateau(finest);
                         let approach = finest.iterate.approach;
-                        return if overlap <= criteria.gap_error(approach) {
-                            Ok(iterations)
-                        } else {
-                            Err(undecided(overlap / approach))
-                        };
+                        let is_one = overlap <= criteria.gap_error(approach);
+                        return Ok((!is_one).then(|| overlap / approach));
                     }
                 },
                 approach @ Prescribed::Approach(_) => approach,
@@ -323,7 +334,7 @@ impl<'a> Stepper<'a> {
                 continue;
             }
             rest.scale(&mut finest.iterate.pressure);
-            iterations += self.solve(rest, false)?;
+            self.solve(rest, false)?;
         }
     }
 
@@ -361,18 +372,19 @@ impl<'a> Stepper<'a> {
         finest.iterate.approach = approach;
         finest.refresh()?;
         self.yielded = plateau.yielded;
-        self.solution(Some(load), 0)
+        self.iterations = 0;
+        self.solution(Some(load))
     }
 
-    /// The solution that the finest grid holds, after so many iterations.
-    fn solution(
-        &mut self,
-        load: Option<f64>,
-        iterations: usize,
-    ) -> Result<FixedLoadSolution, Error> {
+    /// The solution that the finest grid holds.
+    fn solution(&mut self, load: Option<f64>) -> Result<FixedLoadSolution, Error> {
         let (convolutions, coarse_convolutions) = self.hierarchy.take_convolutions();
-        let effort =
-            SolverEffort { iterations, stiffness_iterations: 0, convolutions, coarse_convolutions };
+        let effort = SolverEffort {
+            iterations: self.iterations,
+            stiffness_iterations: 0,
+            convolutions,
+            coarse_convolutions,
+        };
         let finest = &mut self.hierarchy.finest;
         let yielded = self.hardness.map(|hardness| (hardness.values(), &self.yielded[..]));
         let mut solution = FixedLoadSolution::of(finest, load, effort, yielded);
@@ -384,6 +396,15 @@ impl<'a> Stepper<'a> {
         self.last = Some(solution.contact);
         Ok(solution)
     }
+}
+
+/// Which nodes have yielded.
+enum Decision {
+    Made(Vec<bool>),
+    /// Nodes yield and recover in turns, or overlap on a plateau by so much of the approach.
+    Open {
+        residual: f64,
+    },
 }
 
 /// Whether a solution, in which nodes may have yielded, can be one with a hardness.

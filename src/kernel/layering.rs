@@ -1,6 +1,6 @@
 //! What theories of homogeneous half-spaces ask of a body.
 
-use super::{Base, KernelOrigin, LayeredBody};
+use super::{Base, Boundary, KernelOrigin, LayeredBody};
 use crate::Error;
 
 /// What a body is made of, as far as theories of homogeneous half-spaces depend on it.
@@ -13,8 +13,8 @@ pub enum Layering {
     Unknown,
     /// Homogeneous half-spaces.
     HalfSpace,
-    /// Homogeneous half-spaces under a row of images along one side: what their approach is counted from is a
-    /// convention.
+    /// Homogeneous half-spaces, or a kernel of the user's own, under a row of images along one side: what their approach
+    /// is counted from is a convention.
     SemiPeriodicHalfSpace,
     /// Layers of one material on a rigid base, against a rigid body: every displacement goes with 1/E of that material.
     OneMaterial,
@@ -102,9 +102,9 @@ impl LayeredBody {
 }
 
 impl KernelOrigin {
-    /// What the body is made of.
+    /// What the body is made of, in these surroundings.
     #[must_use]
-    pub fn layering(&self) -> Layering {
+    pub fn layering(&self, boundary: Boundary) -> Layering {
         match self {
             Self::Boussinesq { .. } | Self::PeriodicBoussinesq { .. } | Self::Spectral { .. } => {
                 Layering::HalfSpace
@@ -113,7 +113,10 @@ impl KernelOrigin {
             Self::Layered { body }
             | Self::PeriodicLayered { body }
             | Self::SpectralLayered { body } => body.layering(),
-            Self::Other => Layering::Unknown,
+            Self::Other => match boundary {
+                Boundary::PeriodicX | Boundary::PeriodicY => Layering::SemiPeriodicHalfSpace,
+                Boundary::Free | Boundary::Periodic => Layering::Unknown,
+            },
         }
     }
 }
@@ -145,10 +148,18 @@ mod tests {
             if let Some(e_star) = counterpart {
                 body = body.against(e_star)?;
             }
-            assert_eq!(KernelOrigin::Layered { body }.layering(), expected);
+            assert_eq!(KernelOrigin::Layered { body }.layering(Boundary::Free), expected);
         }
-        assert_eq!(KernelOrigin::Other.layering(), Layering::Unknown);
-        assert_eq!(KernelOrigin::Spectral { e_star: 1.0 }.layering(), Layering::HalfSpace);
+        for (boundary, expected) in [
+            (Boundary::Free, Layering::Unknown),
+            (Boundary::Periodic, Layering::Unknown),
+            (Boundary::PeriodicX, Layering::SemiPeriodicHalfSpace),
+            (Boundary::PeriodicY, Layering::SemiPeriodicHalfSpace),
+        ] {
+            assert_eq!(KernelOrigin::Other.layering(boundary), expected);
+        }
+        let spectral = KernelOrigin::Spectral { e_star: 1.0 };
+        assert_eq!(spectral.layering(Boundary::Periodic), Layering::HalfSpace);
         Ok(())
     }
 

@@ -183,7 +183,7 @@ impl LoadingRecord {
                 return Err(Error::NotFinite { step: state.step });
             }
         }
-        let layering = kernel.origin.layering();
+        let layering = kernel.origin.layering(kernel.boundary);
         let end_of_window = history.window_end();
         let ahead = end_of_window.map_or(&[][..], |end| &end.ahead);
         if !ahead.is_empty() {

@@ -9,6 +9,7 @@ use asperity::{
     AdhesionError, Boussinesq, ContactState, ContactTarget, Error, Grid, InfluenceKernel,
     PeriodicBoussinesq,
 };
+use asperity_testing::assert_relative;
 use nalgebra::DMatrix;
 
 fn surface() -> SelfAffine {
@@ -153,6 +154,72 @@ fn without_adhesion_targets_at_touches_are_met() {
                 let back = run(&mut path);
                 let states = [states, more, back].concat().into_iter().collect();
                 assert!(AdhesiveRecord::new(&path, states).is_ok(), "{pair:?} {all}");
+            }
+        }
+    }
+}
+
+/// What is reached with the last node to touch is a target, however the branch came there, and has no state of its own.
+#[test]
+fn full_contact_is_a_target() {
+    let surface = surface();
+    for (kernel, work) in kernels().iter().flat_map(|kernel| [0.0, 4e-4].map(|w| (kernel, w))) {
+        let whole = run(&mut builder(&surface, &**kernel, work).build().unwrap());
+        let last = whole.last().unwrap().contact;
+        assert_eq!(last.contact_area_fraction, 1.0);
+        let targets = [
+            ContactTarget::AreaFraction(1.0),
+            ContactTarget::MeanGap(last.mean_gap),
+            ContactTarget::Load(last.load),
+            ContactTarget::Approach(last.approach),
+        ];
+        for target in targets {
+            let mut path = builder(&surface, &**kernel, work).until(target).build().unwrap();
+            let touched = |states: &[AdhesiveState]| {
+                states.iter().filter(|s| s.event == AdhesiveEvent::Touch).count()
+            };
+            let first = run(&mut path);
+            assert_eq!(path.end(), Some(AdhesiveEnd::Target), "{work} {target:?}");
+            if work == 0.0 {
+                assert_eq!(first, whole, "{target:?}");
+            }
+            // Again from where it is, and from less contact.
+            let present = path.state().unwrap().contact;
+            path.load_to(target).unwrap();
+            run(&mut path);
+            assert_eq!(path.end(), Some(AdhesiveEnd::Target), "{work} {target:?}");
+            // A solution begins there once more, and rounds otherwise.
+            assert_relative!(path.state().unwrap().contact.load, present.load, 1e-12);
+            path.unload_to(ContactTarget::AreaFraction(0.3)).unwrap();
+            run(&mut path);
+            path.load_to(ContactTarget::AreaFraction(1.0)).unwrap();
+            assert!(touched(&run(&mut path)) > 0);
+            assert_eq!(path.end(), Some(AdhesiveEnd::Target), "{work} {target:?}");
+        }
+    }
+}
+
+/// A loading to an area has the same states whether it was interrupted or not.
+#[test]
+fn interrupted_loadings_to_an_area_end_alike() {
+    let surface = surface();
+    for (kernel, work) in kernels().iter().flat_map(|kernel| [0.0, 4e-4].map(|w| (kernel, w))) {
+        let build = || {
+            let area = ContactTarget::AreaFraction(0.3);
+            builder(&surface, &**kernel, work).until(area).build().unwrap()
+        };
+        let whole = run(&mut build());
+        for taken in [1, 7, whole.len() - 1] {
+            let mut path = build();
+            let states: Vec<AdhesiveState> =
+                path.by_ref().take(taken).map(Result::unwrap).collect();
+            let record = AdhesiveRecord::new(&path, states.into_iter().collect()).unwrap();
+            let mut other = record.path().unwrap();
+            let rest = run(&mut other);
+            assert_eq!(other.end(), Some(AdhesiveEnd::Target), "{work} {taken}");
+            assert_eq!(rest.len(), whole.len() - taken, "{work} {taken}");
+            for (found, expected) in rest.iter().zip(&whole[taken..]) {
+                assert_eq!((found.event, found.node), (expected.event, expected.node));
             }
         }
     }

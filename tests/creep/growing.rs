@@ -357,6 +357,36 @@ fn the_end_of_the_path_has_a_time() {
     assert_eq!(weak.time_of(bed.last_load()), None);
 }
 
+/// At an approach that is held, contact and gaps stay, also where a body has flowed until nothing but rounding is left
+/// of its load.
+#[test]
+fn a_fluid_keeps_its_contact_at_an_approach_that_is_held() {
+    let case = free();
+    let bed = Bed::new(&case.history).unwrap();
+    // At the first touch, between two events, and between the last two.
+    for (from, to) in [(0, 1), (60, 61), (254, 255)] {
+        let approach = 0.5 * (bed.approaches()[from] + bed.approaches()[to]);
+        for body in [fluid(), Prony::shares(&[(1.0, 1.0)]).unwrap()] {
+            let course = PiecewiseLinear::step(approach).unwrap();
+            let held = Relaxation::new(&bed, &body, &course).unwrap();
+            for step in [0.25, 1.0, 7.0] {
+                let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+                contact.step(0.0, Control::Approach(approach)).unwrap();
+                for _ in 0..200 {
+                    let state = contact.step(step, Control::Approach(approach)).unwrap();
+                    let expected = held.at(state.time).unwrap();
+                    assert_eq!(state.contact_nodes, expected.contact_nodes, "{state:?}");
+                    assert_eq!(state.contact_area, expected.contact_area);
+                    let off = (state.mean_gap - expected.mean_gap).abs();
+                    assert!(off <= 1e-12 * bed.mean_gaps()[0], "{state:?}");
+                }
+                let first = bed.at_approach(approach).unwrap().load;
+                assert!(contact.state().load <= 1e-12 * first);
+            }
+        }
+    }
+}
+
 /// A body that only flows: contact grows as long as the load times its fluidity outweighs the fall of the load.
 #[test]
 fn a_fluid_recedes_on_a_long_ramp() {

@@ -105,7 +105,7 @@ impl Row {
         } else {
             self.follow(usize::MAX)
         };
-        let history = history.on(self.kernel.origin().layering());
+        let history = history.on(self.kernel.origin().layering(self.kernel.boundary()));
         Pressed { row: self, path, history }
     }
 }

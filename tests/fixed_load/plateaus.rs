@@ -295,7 +295,9 @@ fn loose_tolerances_are_decided() {
             for kernel in kernels(grid) {
                 for tolerance in [0.1, 0.03, 0.01] {
                     let builder = FixedLoadSolver::builder(&surface, &*kernel).hardness(hardness);
-                    let mut solver = builder.tolerance(tolerance).build().unwrap();
+                    // Each elastic solution takes less, all of them together more.
+                    let builder = builder.tolerance(tolerance).max_iterations(60);
+                    let mut solver = builder.build().unwrap();
                     for fraction in [0.1, 0.3, 0.5, 0.6, 0.75, 0.9] {
                         let found = solver.solve_target(ContactTarget::AreaFraction(fraction));
                         assert!(found.is_ok(), "{seed} {n} {tolerance} {fraction}: {found:?}");

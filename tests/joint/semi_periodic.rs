@@ -1,13 +1,15 @@
 //! Conductance on half-spaces that repeat along one side, whose approach is counted from where one likes.
 
 use asperity::joint::{Conduction, InterfaceTable};
-use asperity::kernel::Layering;
+use asperity::kernel::{KernelTable, Layering};
 use asperity::loading::History;
 use asperity::reference::contact_conductance;
 use asperity::surface::{Axis, HeightMap};
 use asperity::{
-    ContactState, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SemiPeriodicBoussinesq,
+    ContactGrowth, ContactState, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
+    SemiPeriodicBoussinesq,
 };
+use asperity_testing::assert_relative;
 use asperity_testing::dense::restrict;
 use nalgebra::{DMatrix, DVector};
 
@@ -20,9 +22,13 @@ fn heat() -> Conduction {
     Conduction::thermal(E_STAR, RESISTIVITY).unwrap()
 }
 
+fn body_of(kernel: &dyn InfluenceKernel) -> Layering {
+    kernel.origin().layering(kernel.boundary())
+}
+
 /// The states of a path, of the body that its kernel is.
 fn of_body(states: History, kernel: &dyn InfluenceKernel) -> History {
-    states.on(kernel.origin().layering())
+    states.on(body_of(kernel))
 }
 
 /// `∫ dx dy / r` over a rectangle of the sides a and b around the origin, from a point in its plane.
@@ -83,10 +89,17 @@ fn a_row_conducts_to_the_mean_of_its_surface() {
         spots(&grid, |ix, iy| (ix * 5 + iy * 7 + ix * iy * 3) % 11 < 3 && iy != 4);
     let kernel = SemiPeriodicBoussinesq::new(grid, E_STAR, Axis::X).unwrap();
     let contact = touching(&surface, &kernel, nodes.len());
-    let body = kernel.origin().layering();
+    let body = body_of(&kernel);
     assert_eq!(body, Layering::SemiPeriodicHalfSpace);
     let found = heat().of(&contact, body).unwrap().unwrap();
     assert_eq!(heat().of_interface(&contact, body).unwrap(), Some(found));
+    // The same coefficients, as if they were somebody's own.
+    let coefficient = |di, dj| kernel.coefficient(di, dj);
+    let own =
+        KernelTable::from_fn(grid, kernel.boundary(), ContactGrowth::Unknown, coefficient).unwrap();
+    let contact = touching(&surface, &own, nodes.len());
+    let of_own = heat().of(&contact, body_of(&own)).unwrap().unwrap();
+    assert_relative!(of_own, found, 1e-10);
     let far = contact_conductance(contact.contact_stiffness.unwrap(), E_STAR, RESISTIVITY).unwrap();
     let [short, long] = [50, 400].map(|images| conducted(&grid, &nodes, images));
     // What a row leaves out falls by the square of its length: 1/N² of half the width over the side, below 10⁻³ and
@@ -105,13 +118,13 @@ fn many_strips_conduct_as_a_periodic_half_space() {
     let (surface, nodes) = spots(&tile, is_one);
     let periodic = PeriodicBoussinesq::new(tile, E_STAR).unwrap();
     let contact = touching(&surface, &periodic, nodes.len());
-    let expected = heat().of(&contact, periodic.origin().layering()).unwrap().unwrap();
+    let expected = heat().of(&contact, body_of(&periodic)).unwrap().unwrap();
     let off = [1, 4, 16, 64].map(|count| {
         let grid = Grid::new(4, 4 * count, 2.5e-4, 2.5e-4).unwrap();
         let (surface, nodes) = spots(&grid, is_one);
         let kernel = SemiPeriodicBoussinesq::new(grid, E_STAR, Axis::X).unwrap();
         let contact = touching(&surface, &kernel, nodes.len());
-        let found = heat().of(&contact, kernel.origin().layering()).unwrap().unwrap();
+        let found = heat().of(&contact, body_of(&kernel)).unwrap().unwrap();
         (found / count as f64 / expected - 1.0).abs()
     });
     assert!(off[3] < off[2] && off[2] < off[1] && off[3] < 0.004, "{off:?}");

@@ -73,7 +73,8 @@ pub(super) struct Inner {
 
 impl Inner {
     pub(super) fn live(engine: Engine, bodies: &[(f64, f64)], means: Means) -> Self {
-        let layering = engine.problem().table().origin().layering();
+        let table = engine.problem().table();
+        let layering = table.origin().layering(table.boundary());
         let history = Arc::new(loading::History::default().on(layering));
         Self { source: Source::Live(Box::new(engine)), history, bodies: bodies.to_vec(), means }
     }
