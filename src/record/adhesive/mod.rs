@@ -132,6 +132,12 @@ impl AdhesiveRecord {
         &self.states
     }
 
+    /// Which way the last branch goes, and where it is to end; `None` if it has come there.
+    #[must_use]
+    pub fn pending(&self) -> Option<(Direction, &[ContactTarget])> {
+        self.pending.as_ref().map(|(direction, targets)| (*direction, &targets[..]))
+    }
+
     /// The path at its last state: to go on to where its branch was to end, to turn around, to go on elsewhere
     /// ([`load_to`](AdhesivePath::load_to), [`unload`](AdhesivePath::unload)), and for
     /// [fields](AdhesivePath::fields_at) of its states.
@@ -168,7 +174,7 @@ impl AdhesiveRecord {
         let builder = memory_budget.into_iter().fold(builder, AdhesiveBuilder::memory_budget);
         let last = self.states.states().last();
         // Targets of a branch of unloading are none from where the surfaces are apart.
-        let pending = self.pending.as_ref().map(|(direction, targets)| (*direction, &targets[..]));
+        let pending = self.pending();
         let targets = pending.iter().flat_map(|(_, targets)| *targets);
         let targets = targets.filter(|_| last.is_none()).copied();
         let builder = targets.fold(builder, AdhesiveBuilder::until);
