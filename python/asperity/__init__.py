@@ -50,7 +50,7 @@ Conventions
 * Heights are positive towards the half-space: the highest node touches first. Pressure is positive in compression, a gap
   where the surfaces are apart.
 * The approach counts from first touch; on a periodic half-space it is that of the mean planes.
-* Every array is a new one: float64, int64, bool or text, in C order; NaN for what does not exist.
+* Every array is a new one: float64, int64, int8 (codes), bool or text, in C order; NaN for what does not exist.
 
 Own kernels can be functions of Python (`HalfSpace.from_symbol`, `HalfSpace.from_coefficients`), which are called once.
 Own solvers of the linear systems are written in Rust, by its trait ``LinearUpdater``.

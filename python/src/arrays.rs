@@ -9,7 +9,7 @@ use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyList, PyTuple};
 
 use crate::argument::one_of;
 use crate::errors::{Failure, Fallible, Number, Numbers};
@@ -38,13 +38,12 @@ impl<'py> Found<'py> {
             masked.call_method1(intern!(py, "isMaskedArray"), (value,))?.is_truthy()
         };
         // Rows that are masked keep their masks.
-        let rows = value.cast::<PyList>().ok().filter(|list| !list.is_empty());
-        let has_masks = match rows {
-            Some(rows) => {
-                rows.iter().map(|row| is_mask(&row)).collect::<PyResult<Vec<_>>>()?.contains(&true)
+        let mut has_masks = false;
+        if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+            for row in value.try_iter()? {
+                has_masks |= is_mask(&row?)?;
             }
-            None => false,
-        };
+        }
         let value =
             &if has_masks { masked.call_method1("stack", (value,))? } else { value.clone() };
         let is_masked = is_mask(value)?;

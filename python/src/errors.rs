@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use asperity::{
     AdhesionError, BedError, CreepError, Error, FileError, JointError, KernelError, SlipError,
-    SurfaceError, UpdaterError,
+    StressError, SurfaceError, UpdaterError,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -262,6 +262,7 @@ fn describe(error: &Error) -> Described {
         Error::Creep(error) => of_creep(error),
         Error::Slip(error) => of_slip(error),
         Error::Joint(error) => of_joint(error),
+        Error::Stress(error) => of_stress(error),
         Error::NotHomogeneous { asked, reason } => {
             (VALUE, "NotHomogeneous", numbers![asked, reason])
         }
@@ -269,6 +270,22 @@ fn describe(error: &Error) -> Described {
         Error::Surface(error) => of_surface(error),
         Error::File(error) => of_file(error),
         // Those that come to be later have their words.
+        _ => (VALUE, "Other", Vec::new()),
+    }
+}
+
+fn of_stress(error: &StressError) -> Described {
+    match error {
+        StressError::NoLoad => (VALUE, "NoLoad", Vec::new()),
+        StressError::InRigidBase { depth, thickness } => {
+            (VALUE, "InRigidBase", numbers![depth, thickness])
+        }
+        StressError::BehindHardness { yield_stress, load, reached } => {
+            (VALUE, "BehindHardness", numbers![yield_stress, load, reached])
+        }
+        StressError::YieldStresses { given, materials } => {
+            (VALUE, "YieldStresses", numbers![given, materials])
+        }
         _ => (VALUE, "Other", Vec::new()),
     }
 }

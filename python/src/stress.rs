@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use asperity::Error;
+use asperity::kernel::KernelOrigin;
 use asperity::nalgebra::DMatrix;
 use asperity::record::LoadingRecord;
 use asperity::stress::{FirstYield, Greatest, Measure, Subsurface};
@@ -122,6 +123,12 @@ fn stress_of(
 /// -------
 /// results.FirstYield or None
 ///     None if the path ends before.
+///
+/// Raises
+/// ------
+/// AsperityError
+///     If nodes of a path with a hardness yield before that, and the stress at its end is below `yield_stress`: in
+///     between it may have been above (``kind`` is ``"BehindHardness"``).
 #[pyfunction]
 #[pyo3(signature = (path, yield_stress, poissons_ratio=None, *, friction=0.0, angle=0.0))]
 fn first_yield<'py>(
@@ -154,6 +161,11 @@ fn first_yield<'py>(
 /// -------
 /// list of results.FirstYield or None
 ///     One for each; None if the path ends before.
+///
+/// Raises
+/// ------
+/// AsperityError
+///     As of `first_yield`.
 #[pyfunction]
 #[pyo3(signature = (path, yield_stresses, poissons_ratio=None, *, friction=0.0, angle=0.0))]
 fn first_yields<'py>(
@@ -188,10 +200,16 @@ fn of_path(
 ) -> Fallible<Subsurface> {
     let known = || path.elastic_bodies(py).first().map(|(_, ratio)| *ratio);
     let ratio = poissons_ratio.or_else(known);
-    // Layers have ratios of their own.
-    let of_record = move |record: &LoadingRecord| match ratio {
-        None if record.kernel().origin.composite_modulus().is_some() => Ok(None),
-        _ => Subsurface::of_record(record, ratio.unwrap_or_default()).map(Some),
+    let of_record = move |record: &LoadingRecord| match (ratio, &record.kernel().origin) {
+        // Layers have ratios of their own.
+        (
+            None,
+            KernelOrigin::Layered { .. }
+            | KernelOrigin::PeriodicLayered { .. }
+            | KernelOrigin::SpectralLayered { .. },
+        ) => Subsurface::of_record(record, 0.0).map(Some),
+        (None, _) => Ok(None),
+        (Some(ratio), _) => Subsurface::of_record(record, ratio).map(Some),
     };
     let below = path.with_record(py, move |_, record| of_record(record))?.ok_or_else(|| {
         Failure::arguments("give poissons_ratio, unless the path knows its bodies")

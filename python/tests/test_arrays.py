@@ -73,8 +73,9 @@ def test_what_is_missing() -> None:
 
 def test_rows_that_are_masked() -> None:
     rows = [np.ma.masked_greater(np.arange(4.0) + k, 5.0) for k in range(4)]
-    surface = asp.Surface(rows, size=(1.0, 1.0))
-    assert surface.missing == sum(row.mask.sum() for row in rows) == 1
+    for given in [rows, tuple(rows)]:
+        surface = asp.Surface(given, size=(1.0, 1.0))
+        assert surface.missing == sum(row.mask.sum() for row in rows) == 1
 
 
 def test_masks_of_truths() -> None:

@@ -68,6 +68,9 @@ def test_its_coefficients_make_the_same_body() -> None:
     np.testing.assert_array_equal(asp.influence(surface, own), table)
     paths = [asp.load_path(surface, body, nodes=60, check=False).run(check=False) for body in (body, own)]
     np.testing.assert_array_equal(paths[0].load, paths[1].load)
+    # What its approach is counted from is a convention, whoever made it.
+    conducted = [asp.conductance(path, e_star=1.0, resistivity=1.0) for path in paths]
+    np.testing.assert_array_equal(conducted[0], conducted[1])
 
 
 def test_patches_and_leaks_take_the_side() -> None:

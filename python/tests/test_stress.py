@@ -56,8 +56,9 @@ def test_each_material_yields_by_itself(program: Callable[..., str], tmp_path: P
         depths.append(first.greatest.depth)
     assert depths[0] <= 2e-4 < depths[1]
     assert asp.first_yields(path, [1e15, 5e8])[0] is None
-    with pytest.raises(errors.AsperityError, match="2 materials"):
+    with pytest.raises(errors.AsperityError, match="2 materials") as told:
         asp.first_yields(path, [1e9])
+    assert (told.value.kind, told.value.given, told.value.materials) == ("YieldStresses", 1, 2)
 
 
 def test_rows_and_columns() -> None:
@@ -96,8 +97,9 @@ def test_a_volume(tmp_path: Path) -> None:
 
 
 def test_what_has_no_answer_is_refused() -> None:
-    with pytest.raises(errors.AsperityError):
+    with pytest.raises(errors.AsperityError) as told:
         asp.stress_of(np.zeros((4, 4)), 1e-3, 0.3, periodic=False).survey()
+    assert told.value.kind == "NoLoad"
     for ratio in (-1.0, 0.6, float("nan")):
         with pytest.raises(ValueError):
             asp.stress_of(np.ones((4, 4)), 1e-3, ratio, periodic=False)
@@ -127,3 +129,10 @@ def test_what_has_no_answer_is_refused() -> None:
     plain.run(check=False)
     with pytest.raises(ValueError, match="poissons_ratio"):
         asp.stress(plain)
+    # Nor does a body of one's own have a ratio.
+    own = asp.HalfSpace.from_symbol(lambda qx, qy: 2.0 / (1e11 * np.hypot(qx, qy)))
+    path = asp.load_path(asp.example_surface(nodes=16), own, area_fraction=0.1, check=False)
+    path.run(check=False)
+    with pytest.raises(ValueError, match="poissons_ratio"):
+        asp.first_yield(path, 1e9)
+    assert asp.stress(path, 0.3).poissons_ratio == 0.3
