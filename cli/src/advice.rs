@@ -1,7 +1,15 @@
 //! Options of the command line that do what the library advises.
 
-use asperity::Warning;
+use asperity::{ContactGrowth, Warning};
 use asperity_cli::outcome::of_program;
+
+/// The same of a contact on a body. Where nodes may leave the contact, none can have a hardness.
+pub(crate) fn told_on(growth: ContactGrowth, warning: &Warning) -> String {
+    match (growth, warning) {
+        (ContactGrowth::Unknown, Warning::HighPressure { .. }) => of_program(&warning.to_string()),
+        _ => told(warning),
+    }
+}
 
 /// What looks wrong, with the option that changes it if there is one.
 pub(crate) fn told(warning: &Warning) -> String {

@@ -19,6 +19,7 @@ use crate::advice;
 use crate::at::At;
 use crate::conduction::{Conduct, conductances};
 use crate::contact_map::draw as draw_map;
+use crate::earlier::{self, Earlier};
 use crate::elasticity::Elasticity;
 use crate::hardness::Hardness;
 use crate::path::fields::Format;
@@ -188,6 +189,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     let directory = options.directory();
     options.save.as_deref().into_iter().chain(directory).try_for_each(outcome::create_folder)?;
+    let earlier = directory.map(|directory| Earlier::of(&earlier::LOAD, directory, None));
     let mut outcome = Outcome::default();
     let names = COLUMNS.into_iter().chain(conductions.iter().map(|(name, _)| *name));
     let mut table = format!("{}\n", names.collect::<Vec<_>>().join(","));
@@ -219,7 +221,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
                     .map_err(|error| Failure::new("cannot look at the contact", error))?;
             let yields = solution.contact.plastic.is_some();
             let high = bodies.warning_of(solution.fields.max_pressure()).filter(|_| !yields);
-            let told = of_contact.iter().chain(&high).map(advice::told);
+            let growth = half_space.contact_growth();
+            let told = of_contact.iter().chain(&high).map(|found| advice::told_on(growth, found));
             warnings.extend(told.map(|told| format!("at {at}: {told}")));
             Ok(solution)
         });
@@ -257,7 +260,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         answer!("{}", json!({ "states": states }));
     }
-    outcome.finish()
+    match earlier {
+        Some(earlier) => earlier.finish(outcome),
+        None => outcome.finish(),
+    }
 }
 
 /// A solution with its stiffnesses, and the seconds that it and they took.

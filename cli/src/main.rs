@@ -7,6 +7,7 @@ mod columns;
 mod conduction;
 mod contact_map;
 mod creep;
+mod earlier;
 mod elasticity;
 mod ensemble;
 mod formats;
@@ -16,6 +17,7 @@ mod history_table;
 mod info;
 mod layers;
 mod leak;
+mod lists;
 mod load;
 mod material;
 mod passages;
@@ -110,6 +112,7 @@ fn main() -> ExitCode {
     let words = with_negative_values(std::env::args_os());
     let parsed = Arguments::command().try_get_matches_from(words).and_then(|given| {
         let arguments = Arguments::from_arg_matches(&given)?;
+        lists::check(Arguments::command(), &given)?;
         Ok((given, arguments))
     });
     let (given, arguments) = parsed.unwrap_or_else(|error| {

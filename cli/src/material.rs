@@ -56,6 +56,10 @@ impl FromStr for Material {
         if let Some(known) = Known::named(text) {
             return Ok(Self::named(known));
         }
+        if text.eq_ignore_ascii_case("rigid") {
+            return Err("a rigid body has no modulus: without --against the other body is rigid"
+                .to_string());
+        }
         let Some((e, nu)) = text.split_once(',') else {
             let names: Vec<&str> = Known::ALL.iter().map(|known| known.name).collect();
             return Err(format!("neither 'E,NU' nor one of {}", names.join(", ")));

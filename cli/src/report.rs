@@ -1,5 +1,7 @@
 //! `asperity report`: a path as one page, for a browser.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -36,6 +38,14 @@ pub(crate) struct Options {
     out: PathBuf,
 }
 
+/// Whether there is a file that is no page of HTML; an empty one is a place for it.
+fn is_something_else(file: &Path) -> bool {
+    let mut begin = Vec::new();
+    let read = File::open(file).and_then(|file| file.take(1024).read_to_end(&mut begin));
+    let begin = String::from_utf8_lossy(&begin).trim_start().to_ascii_lowercase();
+    file.is_file() && (read.is_err() || !begin.is_empty() && !begin.starts_with("<!doctype html"))
+}
+
 /// Reads the records and writes the page.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outcome::check_place(&options.out)?;
@@ -43,6 +53,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return Err(Failure::request(format!(
             "--out would replace the record {}: name another file",
             record.display()
+        )));
+    }
+    if is_something_else(&options.out) {
+        return Err(Failure::request(format!(
+            "{} is no page, and would be lost: name another file with --out, or remove it",
+            options.out.display()
         )));
     }
     if let Some(folder) = options.with.iter().find(|folder| !folder.is_dir()) {

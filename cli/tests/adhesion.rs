@@ -6,9 +6,10 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
+use asperity::ContactTarget;
 use asperity::adhesion::{AdhesiveEvent, AdhesiveState, Direction};
 use asperity::record::AdhesiveRecord;
-use common::{Scratch, answer, is_refused, number, output, run, said};
+use common::{Scratch, answer, is_refused, number, output, printed, run, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -280,7 +281,7 @@ fn a_sphere_is_pulled_off() -> Done {
 #[test]
 fn states_are_those_that_are_asked_for() -> Done {
     let folder = Scratch::new("adhesion_at")?;
-    let line = format!("{SOFT} {STICKS} --mean-pressure 200 --at 50,12%,150 --fields npy");
+    let line = format!("{SOFT} {STICKS} --mean-pressure 200 --at 50Pa,12%,150 --fields npy");
     let object = answer(&folder.0, &line)?;
     let at = object["at"].as_array().ok_or("no states")?;
     let loads: Vec<f64> = at.iter().map(|state| number(state, "mean_pressure")).collect();
@@ -297,7 +298,7 @@ fn states_are_those_that_are_asked_for() -> Done {
     assert!(pressure.min() < 0.0);
     // Pressures of both signs that are a thousand times the mean, each to 1e-12.
     assert!((pressure.mean() / 50.0 - 1.0).abs() < 1e-7, "{}", pressure.mean());
-    let missed = format!("{SOFT} {STICKS} --mean-pressure 200 --at 50,90%");
+    let missed = format!("{SOFT} {STICKS} --mean-pressure 200 --at 50Pa,90%");
     let done = output(&folder.0, &missed)?;
     is_refused(&done, &["the path has no state at 90 %"]);
     Ok(())
@@ -346,6 +347,41 @@ fn records_go_on() -> Done {
     }
     let rows = Table::read(&folder.join("again/path.csv"))?.words("step")?.len();
     assert_eq!(AdhesiveRecord::read_npz(folder.join("r.npz"))?.states().states().len(), rows);
+    Ok(())
+}
+
+/// Without an end on the command line the loading of a record goes on to its own, and not at all if it is there.
+#[test]
+fn records_go_on_to_their_own_ends() -> Done {
+    let folder = Scratch::new("adhesion_own_end")?;
+    run(&folder.0, &format!("{SOFT} {STICKS} --mean-pressure 50 --unload --record both.npz"))?;
+    run(&folder.0, &format!("{SOFT} {STICKS} --mean-pressure 50 --record r.npz"))?;
+    for name in ["r.npz", "both.npz"] {
+        let before = AdhesiveRecord::read_npz(folder.join(name))?.states().states().len();
+        let line = format!("path --resume {name} --out again");
+        let words = printed(&run(&folder.0, &line)?);
+        assert!(words.contains("the end of loading in the record"), "{words}");
+        assert!(!words.contains("of the nominal area"), "{words}");
+        let after = AdhesiveRecord::read_npz(folder.join(name))?.states().states().len();
+        assert_eq!(before, after, "{name}");
+    }
+    let record = AdhesiveRecord::read_npz(folder.join("r.npz"))?;
+    let mut path = record.path()?;
+    path.load_to(ContactTarget::MeanPressure(100.0))?;
+    let more = path.by_ref().take(5).collect::<Result<Vec<_>, _>>()?;
+    let states = record.states().states().iter().copied().chain(more).collect();
+    AdhesiveRecord::new(&path, states)?.write_npz(folder.join("own.npz"), &[])?;
+    let on = answer(&folder.0, "path --resume own.npz --out own")?;
+    assert!((number(&on, "mean_pressure") / 100.0 - 1.0).abs() < 1e-12, "{on}");
+    // One that was on its way back may go on with that, or turn around.
+    let record = AdhesiveRecord::read_npz(folder.join("r.npz"))?;
+    let mut path = record.path()?;
+    path.unload()?;
+    let more = path.by_ref().take(5).collect::<Result<Vec<_>, _>>()?;
+    let states = record.states().states().iter().copied().chain(more).collect();
+    AdhesiveRecord::new(&path, states)?.write_npz(folder.join("back.npz"), &[])?;
+    is_refused(&output(&folder.0, "path --resume back.npz --out back")?, &["--unload"]);
+    run(&folder.0, "path --resume back.npz --out back --unload")?;
     Ok(())
 }
 

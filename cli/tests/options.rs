@@ -15,6 +15,25 @@ use nalgebra::DMatrix;
 
 type Done = Result<(), Box<dyn Error>>;
 
+/// A decimal comma makes two numbers of one, the first of which has no unit.
+#[test]
+fn decimal_commas_in_lists_are_refused() -> Done {
+    let folder = with_surface("commas")?;
+    for line in [
+        "load --surface rough.npy --side 1cm --e-star 1 --at 1,5MPa",
+        "load --surface rough.npy --side 1cm --e-star 1 --at 5MPa,1,5N",
+        "path --surface rough.npy --side 1cm --material steel --at 5,10,50MPa",
+        "path --surface rough.npy --side 1cm --material steel --at=1,5MPa --max-load 10N",
+    ] {
+        let done = output(&folder.0, line)?;
+        assert_eq!(done.status.code(), Some(2), "{line}");
+        assert!(said(&done).contains("decimal point"), "{line}: {}", said(&done));
+    }
+    run(&folder.0, "load --surface rough.npy --side 1cm --e-star 1 --at 1e-3,2e-3")?;
+    run(&folder.0, "load --surface rough.npy --side 1cm --e-star 1 --at 1mPa,20%,2e-3")?;
+    Ok(())
+}
+
 /// A mean pressure is a load, with a unit or without. People read a table of all states, and programs a file and an
 /// object.
 #[test]

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use common::{Scratch, asperity, is_refused, output, said};
+use common::{Scratch, asperity, data, is_refused, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -267,6 +267,54 @@ fn a_record_of_another_surface_is_kept() -> Done {
     let onto = "path --resume other.npz --record path.npz --max-area-fraction 0.2";
     is_refused(&output(&folder.0, onto)?, &["path.npz", "another surface"]);
     assert_eq!(fs::read(folder.join("path.npz"))?, before);
+    Ok(())
+}
+
+/// A file that is no record is not replaced by one; an empty one is a place for it.
+#[test]
+fn other_files_are_not_replaced() -> Done {
+    let folder = Scratch::new("records-other")?;
+    let mine = folder.join("mine.npz");
+    fs::copy(data("selfaffine_48.npy"), &mine)?;
+    let before = fs::read(&mine)?;
+    let line = "path --nodes 16 --record mine.npz";
+    is_refused(&output(&folder.0, line)?, &["mine.npz", "no record"]);
+    assert_eq!(fs::read(&mine)?, before);
+    fs::write(&mine, "")?;
+    printed(&folder.0, line)?;
+    for name in ["mine.npz", "other.npy"] {
+        if name == "other.npy" {
+            fs::copy(data("selfaffine_48.npy"), folder.join(name))?;
+        }
+        fs::copy(&mine, folder.join("kept.npz"))?;
+        let before = fs::read(folder.join(name))?;
+        is_refused(
+            &output(&folder.0, &format!("report kept.npz --out {name}"))?,
+            &[name, "no page"],
+        );
+        assert_eq!(fs::read(folder.join(name))?, before);
+    }
+    printed(&folder.0, "report kept.npz --out page.html")?;
+    printed(&folder.0, "report kept.npz --out page.html")?;
+    Ok(())
+}
+
+/// What a table of slip or creep had beside it and does not have any more is said to be of an earlier run.
+#[test]
+fn tables_of_an_earlier_run_are_named() -> Done {
+    let folder = Scratch::new("records-earlier-tables")?;
+    printed(&folder.0, "path --nodes 32 --record r.npz")?;
+    fs::write(folder.join("out/slip.csv"), "")?;
+    for (before, told) in [(true, false), (false, true)] {
+        if before {
+            fs::remove_file(folder.join("out/slip.csv"))?;
+            fs::write(folder.join("out/history.csv"), "")?;
+        }
+        let done = output(&folder.0, "slip r.npz --friction 0.5")?;
+        let said = said(&done);
+        assert!(done.status.success(), "{said}");
+        assert_eq!(said.contains("note: of an earlier slip: out/history.csv"), told, "{said}");
+    }
     Ok(())
 }
 

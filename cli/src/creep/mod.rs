@@ -20,6 +20,7 @@ use asperity::record::LoadingRecord;
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 
+use crate::earlier::{self, Earlier};
 use crate::path::fields;
 use course::Task;
 use cycles::Sweep;
@@ -66,6 +67,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     panel::register_font()?;
     outcome::create_folder(directory)?;
+    let earlier = Earlier::of(&earlier::CREEP, directory, None);
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
     let has_corners = options.history.is_some();
@@ -94,5 +96,5 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     outcome.note(followed.whole(&task, &options.record));
-    outcome.finish()
+    earlier.finish(outcome)
 }

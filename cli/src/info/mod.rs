@@ -224,7 +224,10 @@ fn print(
         );
     }
     for warning in warnings(measured, whole) {
-        say!("warning       {warning}");
+        match speech::is_quiet() {
+            true => speech::warn(warning),
+            false => say!("warning       {warning}"),
+        }
     }
     Ok(())
 }

@@ -26,7 +26,19 @@ pub(super) fn draw(curve: &LeakCurve, name: &Path) -> Result<Option<PathBuf>, Fa
         let points = leaking.iter().map(|point| (pressure(point), quantity(point)));
         points.filter(|(_, value)| *value > 0.0).collect()
     };
-    let shown = |points: Vec<(f64, f64)>| points.into_iter().filter(|(_, y)| *y >= least);
+    // A line that goes on below is drawn down to the border.
+    let shown = |points: Vec<(f64, f64)>| {
+        let crossings = points.windows(2).filter_map(|pair| {
+            let [(from, high), (to, low)] = [pair[0], pair[1]];
+            let part = (high / least).ln() / (high / low).ln();
+            let crosses = (high >= least) != (low >= least);
+            crosses.then_some((from + part * (to - from), least))
+        });
+        let mut shown: Vec<_> = crossings.collect();
+        shown.extend(points.into_iter().filter(|(_, y)| *y >= least));
+        shown.sort_by(|a, b| a.0.total_cmp(&b.0));
+        shown
+    };
     let closing = curve.closing.map(|state| state.contact.mean_pressure());
     let mark = |name: &str, from: f64, to: f64| {
         let line = closing.map(|at| [(at, from), (at, to)]);

@@ -21,6 +21,7 @@ use clap::Args;
 
 use crate::advice;
 use crate::at::state_at_load;
+use crate::earlier::{self, Earlier};
 use crate::values::FORCE;
 use fluid::Fluid;
 pub(crate) use fluid::PerhapsFluid;
@@ -124,6 +125,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     let directory = outcome::directory(options.out.as_deref(), options.json);
     directory.map_or(Ok(()), outcome::create_folder)?;
+    let earlier = directory.map(|directory| Earlier::of(&earlier::LEAK, directory, None));
     words::print_seal(&work.record, &work.seal);
 
     let mut outcome = Outcome::default();
@@ -172,5 +174,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     {
         answer!("{document}");
     }
-    outcome.finish()
+    match earlier {
+        Some(earlier) => earlier.finish(outcome),
+        None => outcome.finish(),
+    }
 }

@@ -102,7 +102,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut outcome = Outcome::default();
     if let Ok(moment) = &moment {
         words::print_moment(moment);
-        let channels = words::print_channels(&record, moment);
+        let channels = words::print_channels(&record, moment, options.corners);
         outcome.note(channels.map_err(|error| Failure::new("cannot find the channels", error)));
     }
     if let Some(directory) = outcome::directory(options.out.as_deref(), options.json) {

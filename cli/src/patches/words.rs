@@ -93,7 +93,11 @@ pub(super) fn warnings(record: &LoadingRecord, moment: &Moment) -> Result<Vec<St
 }
 
 /// The narrowest place of the widest channel, and what looks wrong.
-pub(super) fn print_channels(record: &LoadingRecord, moment: &Moment) -> Result<(), Error> {
+pub(super) fn print_channels(
+    record: &LoadingRecord,
+    moment: &Moment,
+    corners: bool,
+) -> Result<(), Error> {
     let (grid, boundary) = (record.grid(), record.kernel().boundary);
     for (name, axis) in [("x", Axis::X), ("y", Axis::Y)] {
         let on = (&grid, boundary);
@@ -108,7 +112,10 @@ pub(super) fn print_channels(record: &LoadingRecord, moment: &Moment) -> Result<
         }
     }
     let resolution = Resolution::of(&moment.contact_map, &grid, boundary)?;
-    say!("mesh: {resolution}");
+    match corners {
+        true => say!("mesh, of patches that corners do not connect: {resolution}"),
+        false => say!("mesh: {resolution}"),
+    }
     warnings(record, moment)?.iter().for_each(speech::warn);
     Ok(())
 }

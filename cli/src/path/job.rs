@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use asperity::adhesion::AdhesivePath;
+use asperity::adhesion::{AdhesivePath, Direction};
 use asperity::contact::ContactState;
 use asperity::kernel::Layering;
 use asperity::loading::History;
@@ -186,7 +186,7 @@ impl Job {
         })
     }
 
-    /// The path of a record with adhesion, to the end that is given: such a record remembers none.
+    /// The path of a record with adhesion, to the end that is given, or else to where its loading was to end.
     fn resumed_with_adhesion(file: &Path, options: &Options) -> Result<Self, Failure> {
         let failed = |error| Failure::new(format!("cannot resume {}", file.display()), error);
         let record = AdhesiveRecord::read_npz(file).map_err(failed)?;
@@ -194,7 +194,11 @@ impl Job {
         let heights = record.heights().matrix().clone();
         let surface =
             Topography::new(record.grid(), heights).map_err(|error| failed(error.into()))?;
-        let targets = targets(options, surface.grid());
+        let own = match record.pending() {
+            Some((Direction::Loading, targets)) => targets,
+            _ => &[],
+        };
+        let targets = options.targets(surface.grid(), own);
         check_kept(options.record.as_deref(), &surface)?;
         let source = json!({
             "record": file.display().to_string(),
@@ -567,7 +571,14 @@ fn check_kept(file: Option<&Path>, surface: &Topography) -> Result<(), Failure> 
         Ok(record) => (record.grid(), record.heights().clone()),
         Err(_) => match AdhesiveRecord::read_npz(file) {
             Ok(record) => (record.grid(), record.heights().clone()),
-            Err(_) => return Ok(()),
+            // An empty file is a place that somebody has made for the record.
+            Err(_) if file.metadata().is_ok_and(|file| file.len() == 0) => return Ok(()),
+            Err(_) => {
+                return Err(Failure::request(format!(
+                    "{} is no record of a path, and would be lost: name another file with --record, or remove it",
+                    file.display()
+                )));
+            }
         },
     };
     // Records count heights from the highest node.

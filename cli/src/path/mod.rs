@@ -9,7 +9,6 @@ mod adhesive;
 mod again;
 mod conductance_chart;
 mod curves;
-mod earlier;
 mod expected;
 pub(crate) mod fields;
 mod follow;
@@ -47,10 +46,10 @@ use clap::ArgMatches;
 use nalgebra::DMatrix;
 
 use crate::conduction::Named;
+use crate::earlier::{self, Earlier};
 use crate::ensemble::Member;
 use crate::report;
 use crate::settings::Settings;
-use earlier::Earlier;
 use expected::Expected;
 use follow::{Followed, PathFile};
 use interrupt::Interrupt;
@@ -71,12 +70,8 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
         if options.dry_run {
             return estimate(options, "");
         }
-        let earlier = Earlier::of(&options.out, options.resume.as_deref());
-        let outcome = follow_one(options, given, &interrupt, None)?;
-        let left = earlier.told(outcome.files());
-        outcome.finish()?;
-        left.into_iter().for_each(|left| note!("note: {left}"));
-        return Ok(());
+        let earlier = Earlier::of(&earlier::PATH, &options.out, options.resume.as_deref());
+        return earlier.finish(follow_one(options, given, &interrupt, None)?);
     }
     let there = options.ensemble.there(&options.out)?;
     // What is there must be what would be computed now.

@@ -80,7 +80,7 @@ fn shifted(
         if shift != 0 && !repeats {
             return Err(Failure::request(format!(
                 "--against-shift moves along {along} what has to repeat there, and this half-space does not: give \
-                 --periodic, or cut both files to the part that is to touch"
+                 --periodic love, or cut both files to the part that is to touch"
             )));
         }
     }

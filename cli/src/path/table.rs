@@ -3,7 +3,7 @@
 use asperity::contact::ContactFields;
 use asperity::loading::{History, LoadingEnd};
 use asperity::patches::ContactEdge;
-use asperity::{Certificate, Error, LoadingState, Warning};
+use asperity::{Certificate, ContactGrowth, Error, InfluenceKernel, LoadingState, Warning};
 
 use super::Solver;
 use super::job::Job;
@@ -150,7 +150,7 @@ pub(super) fn all_warnings(
         }
         let failed = |error| Failure::new(format!("cannot compute the pressure at {at}"), error);
         let fields = solver.fields_at(&state).map_err(failed)?;
-        let found = of_fields(job, &fields).map_err(failed)?;
+        let found = of_fields(job, growth(solver), &fields).map_err(failed)?;
         all.extend(found.into_iter().map(|warning| format!("at {at}: {warning}")));
     }
     let last = warnings(job, solver)?.into_iter();
@@ -161,8 +161,17 @@ pub(super) fn all_warnings(
     Ok(all)
 }
 
+/// What is known of the contact on the body of a path.
+fn growth(solver: &Solver) -> ContactGrowth {
+    solver.problem().table().contact_growth()
+}
+
 /// What looks wrong with a state.
-fn of_fields(job: &Job, fields: &ContactFields) -> Result<Vec<String>, Error> {
+fn of_fields(
+    job: &Job,
+    growth: ContactGrowth,
+    fields: &ContactFields,
+) -> Result<Vec<String>, Error> {
     let on = (&job.grid(), job.boundary());
     let of_contact = Warning::of_contact(&fields.pressure, &fields.contact_map, on)?;
     // With a hardness it is what was asked for.
@@ -171,14 +180,14 @@ fn of_fields(job: &Job, fields: &ContactFields) -> Result<Vec<String>, Error> {
     let is_known =
         |warning: &Warning| matches!(warning, Warning::NoLoad { .. }) && !job.at().is_empty();
     let found = high.into_iter().chain(of_contact).filter(|warning| !is_known(warning));
-    Ok(found.map(|warning| crate::advice::told(&warning)).collect())
+    Ok(found.map(|warning| crate::advice::told_on(growth, &warning)).collect())
 }
 
 /// What looks wrong with the end of the path.
 pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let failed = |error| Failure::new("cannot compute the pressure of the last state", error);
     let fields = solver.fields().map_err(failed)?;
-    let mut warnings = of_fields(job, &fields).map_err(failed)?;
+    let mut warnings = of_fields(job, growth(solver), &fields).map_err(failed)?;
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
         // A flat surface, whose nodes all touch before there is a load, says nothing of units.

@@ -18,6 +18,7 @@ use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
+use crate::earlier::{self, Earlier};
 use crate::material::Material;
 use crate::values::{FORCE, SHARE, positive};
 use history::Sheared;
@@ -114,7 +115,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     words::print(&joint, sheared.as_ref());
     match directory {
-        Some(directory) => write(&joint, sheared.as_ref(), directory)?.finish(),
+        Some(directory) => {
+            let earlier = Earlier::of(&earlier::SLIP, directory, options.history.as_deref());
+            earlier.finish(write(&joint, sheared.as_ref(), directory)?)
+        }
         None => Ok(()),
     }
 }

@@ -105,7 +105,18 @@ impl Begun {
     pub(super) fn of(job: &Job, options: &Options) -> Result<Self, Failure> {
         let (grid, begun) = (job.grid(), states_of(job));
         let branch = present_loading(begun, options.unload);
-        let ended_by = end_of(branch, job, options)?;
+        let pending = job.begun_with_adhesion().and_then(AdhesiveRecord::pending);
+        let has_no_end = job.targets().is_empty();
+        let ended_by = match pending {
+            Some((Direction::Unloading, _)) if has_no_end && !options.unload => {
+                return Err(Failure::request(
+                    "the path of the record was on its way back: give --unload to go on, or an end of loading to press \
+                     the surfaces together again",
+                ));
+            }
+            None if has_no_end => Some(OF_RECORD),
+            _ => end_of(branch, job, options)?,
+        };
         let (mut reached, mut missed) = (Vec::new(), Vec::new());
         for at in job.at() {
             let target = at.target(grid.nominal_area());
