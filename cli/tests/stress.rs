@@ -314,7 +314,8 @@ fn what_has_no_answer_is_refused() -> Done {
         "path --nodes 16 --layer 400e9,0.25,1e-5 --base steel --record coat.npz --out path -q";
     run(&folder.0, coat)?;
     for (line, words) in [
-        ("stress path.npz", &["--poisson", "--material"][..]),
+        ("stress coat.npz --against-yield-stress 1e9", &["second body", "layers"][..]),
+        ("stress path.npz", &["--poisson", "--material"]),
         ("stress path.npz --poisson 0.3 --load 1e9", &["the path has no state at"]),
         ("stress path.npz --poisson 0.3 --against-yield-stress 1e9", &["--against-yield-stress"]),
         ("stress coat.npz --friction 0.1", &["layers"]),

@@ -69,14 +69,19 @@ impl<'a> Moment<'a> {
         let mut found = Vec::new();
         // Tractions on the other body are opposite.
         let sides = [("body", 1.0, own), ("other body", -1.0, other)];
-        for (ratio, (name, sign, strength)) in ratios(self.record, options)?.into_iter().zip(sides)
-        {
-            found.push(self.body(name, (ratio, sign), strength, options)?);
+        let ratios = ratios(self.record, options)?;
+        if !other.is_empty() && ratios.len() < 2 {
+            return Err(Failure::request(match is_of_layers(self.record) {
+                true => {
+                    "--against-yield-stress is that of a second body, which is not looked at on layers"
+                }
+                false => {
+                    "--against-yield-stress is that of a second body: give --material and --against"
+                }
+            }));
         }
-        if !other.is_empty() && found.len() < 2 {
-            return Err(Failure::request(
-                "--against-yield-stress is that of a second body: give --material and --against",
-            ));
+        for (ratio, (name, sign, strength)) in ratios.into_iter().zip(sides) {
+            found.push(self.body(name, (ratio, sign), strength, options)?);
         }
         Ok(found)
     }
@@ -144,9 +149,14 @@ impl<'a> Moment<'a> {
     }
 }
 
+/// Records of other bodies have one modulus; those on kernels of somebody's own are not read here.
+fn is_of_layers(record: &LoadingRecord) -> bool {
+    record.kernel().origin.composite_modulus().is_none()
+}
+
 /// Poisson's ratios of the body and of the other one, if that is not rigid; layers have their own.
 fn ratios(record: &LoadingRecord, options: &Options) -> Result<Vec<f64>, Failure> {
-    if record.kernel().origin.composite_modulus().is_none() {
+    if is_of_layers(record) {
         return match (options.poisson, options.material) {
             (None, None) => Ok(vec![0.0]),
             _ => Err(Failure::request(
