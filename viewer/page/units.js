@@ -37,9 +37,11 @@ function unitFor(unit, greatest, nominal) {
   if (unit === "") return { name: unit, factor: 1 };
   const [, power, rest] = unit.match(/^m([²³])(.*)/) ?? [];
   if (!power) return prefixed(unit, greatest);
-  // A prefix would be raised to the power of its metre.
-  const length = chosen.length === "auto" ? "m" : chosen.length;
-  return { name: length + power + rest, factor: FACTORS[length] ** (power === "²" ? 2 : 3) };
+  // A prefix would be raised to the power of its metre: areas and volumes have one, rates and permeabilities none.
+  const times = power === "²" ? 2 : 3;
+  const fitting = () => (rest || !greatest ? "m" : ["m", "mm"].find((name) => Math.abs(greatest) >= FACTORS[name] ** times) ?? "µm");
+  const length = chosen.length === "auto" ? fitting() : chosen.length;
+  return { name: length + power + rest, factor: FACTORS[length] ** times };
 }
 
 const SUPERSCRIPTS = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
