@@ -7,7 +7,9 @@ use crate::adhesion::{
     AdhesiveState, CohesiveLaw, Direction, NodeState,
 };
 use crate::bed::{Bed, BedState, Piece, Spring, Superposed, Superposition};
-use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
+use crate::contact::{
+    Certificate, ContactFields, ContactSequence, ContactState, ContactTarget, PlasticState,
+};
 use crate::convolution::Convolution;
 use crate::creep::{
     ControlHistory, Creep, CreepState, Cycle, PiecewiseLinear, Prony, Recession, Relaxation,
@@ -18,17 +20,20 @@ use crate::joint::{
     Carrier, ConductanceBounds, Conduction, FeProgram, InterfaceRow, InterfaceTable,
 };
 use crate::kernel::{
-    Boundary, Boussinesq, ContactGrowth, KernelOrigin, KernelReport, KernelTable, MeanDisplacement,
-    PeriodicBoussinesq, Spectral,
+    Base, Boundary, Boussinesq, ContactGrowth, KernelOrigin, KernelReport, KernelTable, Layer,
+    Layered, LayeredBody, Layering, MeanDisplacement, PeriodicBoussinesq, SemiPeriodicBoussinesq,
+    Spectral,
 };
 use crate::leak::{CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal};
-use crate::loading::{ContactEvent, ContactRule, History, LoadingEnd, LoadingSolver, LoadingState};
+use crate::loading::{
+    ContactEvent, ContactRule, History, LoadingEnd, LoadingPath, LoadingSolver, LoadingState,
+};
 use crate::patches::{
     Bins, Branch, Connectivity, Constriction, ContactEdge, FieldDistribution, Histogram, MergeTree,
     Merger, Patch, PatchEvent, PatchHistory, PatchLoad, PatchState, Patches, Percolation,
     Perimeter,
 };
-use crate::record::{KernelRecord, LoadingRecord, Settings};
+use crate::record::{AdhesiveRecord, KernelRecord, LoadingRecord, Settings};
 use crate::reference::{
     AreaLoadLaw, CircularPunch, Cone, DoubleWave, HertzEllipse, HertzLine, HertzSphere, SphereSlip,
     Westergaard,
@@ -42,10 +47,11 @@ use crate::stress::{
 use crate::surface::{HeightMap, SelfAffine, Topography};
 use crate::updater::{
     ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, UpdaterReport,
+    WindowFactor,
 };
 use crate::{
-    AdhesionError, BedError, Error, FileError, Grid, JointError, KernelError, Problem, SlipError,
-    StressError, UpdaterError, Warning,
+    AdhesionError, BedError, CreepError, Error, FileError, Grid, JointError, KernelError, Problem,
+    SlipError, StressError, UpdaterError, Warning,
 };
 
 /// Compiles for types that can be sent and shared.
@@ -61,13 +67,22 @@ send_and_sync!(
     FileError,
     AdhesionError,
     BedError,
+    CreepError,
     JointError,
     KernelError,
     SlipError,
     StressError,
     UpdaterError
 );
-send_and_sync!(Certificate, ContactSequence, ContactState, ContactTarget, Convolution);
+send_and_sync!(
+    Certificate,
+    ContactFields,
+    ContactSequence,
+    ContactState,
+    ContactTarget,
+    Convolution,
+    PlasticState,
+);
 send_and_sync!(
     FixedLoadSolution,
     FixedLoadSolver,
@@ -75,14 +90,20 @@ send_and_sync!(
     SolverEffort,
 );
 send_and_sync!(
+    Base,
     Boundary,
     Boussinesq,
     ContactGrowth,
     KernelOrigin,
     KernelReport,
     KernelTable,
+    Layer,
+    Layered,
+    LayeredBody,
+    Layering,
     MeanDisplacement,
     PeriodicBoussinesq,
+    SemiPeriodicBoussinesq,
     Spectral,
 );
 send_and_sync!(
@@ -90,6 +111,7 @@ send_and_sync!(
     ContactRule,
     History,
     LoadingEnd,
+    LoadingPath,
     LoadingSolver,
     LoadingSolver<ConjugateGradient>,
     LoadingSolver<Dense>,
@@ -137,7 +159,7 @@ send_and_sync!(
     SlipState,
     SlipZone,
 );
-send_and_sync!(KernelRecord, LoadingRecord, Settings);
+send_and_sync!(AdhesiveRecord, KernelRecord, LoadingRecord, Settings);
 send_and_sync!(Carrier, ConductanceBounds, Conduction, FeProgram, InterfaceRow, InterfaceTable);
 send_and_sync!(CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal);
 send_and_sync!(
@@ -171,5 +193,6 @@ send_and_sync!(
     Schur,
     Solution,
     UpdaterReport,
+    WindowFactor,
 );
 send_and_sync!(DepthSurvey, FirstYield, Greatest, Measure, Stress, StressField, Subsurface, Survey,);

@@ -8,24 +8,30 @@ use super::state::{AdhesiveEvent, AdhesiveState};
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(from = "Vec<AdhesiveState>", into = "Vec<AdhesiveState>")
+    serde(from = "Parts", into = "Parts")
 )]
 pub struct AdhesiveBranch {
     states: Vec<AdhesiveState>,
 }
 
+/// What is written of a branch.
 #[cfg(feature = "serde")]
-impl From<Vec<AdhesiveState>> for AdhesiveBranch {
-    fn from(mut states: Vec<AdhesiveState>) -> Self {
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(transparent)]
+struct Parts(Vec<AdhesiveState>);
+
+#[cfg(feature = "serde")]
+impl From<Parts> for AdhesiveBranch {
+    fn from(Parts(mut states): Parts) -> Self {
         states.iter_mut().for_each(|state| state.contact.restore_infinity());
         Self { states }
     }
 }
 
 #[cfg(feature = "serde")]
-impl From<AdhesiveBranch> for Vec<AdhesiveState> {
+impl From<AdhesiveBranch> for Parts {
     fn from(branch: AdhesiveBranch) -> Self {
-        branch.states
+        Self(branch.states)
     }
 }
 

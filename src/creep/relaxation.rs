@@ -22,13 +22,12 @@ use crate::{BedError, CreepError, Error, LoadingPath};
 /// ```
 /// use asperity::bed::Bed;
 /// use asperity::creep::{PiecewiseLinear, Prony, Relaxation};
-/// use asperity::loading::History;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
-/// let path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
-/// let history: History = path.collect::<Result<_, _>>()?;
+/// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
+/// let history = path.run()?;
 /// let bed = Bed::new(&history)?;
 /// let rubber = Prony::shares(&[(1.0, 0.5)])?;
 /// let approach = bed.at_load(200.0)?.approach;

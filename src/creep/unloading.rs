@@ -23,13 +23,12 @@ use crate::{CreepError, Error};
 /// ```
 /// use asperity::bed::Bed;
 /// use asperity::creep::{PiecewiseLinear, Creep, Prony, Unloading};
-/// use asperity::loading::History;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
-/// let path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
-/// let history: History = path.collect::<Result<_, _>>()?;
+/// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
+/// let history = path.run()?;
 /// let bed = Bed::new(&history)?;
 /// let load = PiecewiseLinear::ramp(200.0, 1.0)?.to(0.0, 1.0)?;
 /// let creep = Creep::new(&bed, &Prony::shares(&[(1.0, 0.5)])?, &load)?;

@@ -36,13 +36,12 @@ pub enum Control {
 /// ```
 /// use asperity::bed::Bed;
 /// use asperity::creep::{Control, Prony, ViscoelasticBed};
-/// use asperity::loading::History;
 /// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
-/// let path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(900.0).build()?;
-/// let history: History = path.collect::<Result<_, _>>()?;
+/// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(900.0).build()?;
+/// let history = path.run()?;
 /// let bed = Bed::new(&history)?;
 /// let mut contact = ViscoelasticBed::new(&bed, &Prony::shares(&[(1.0, 0.5)])?)?;
 /// let pressed = contact.step(0.0, Control::Load(400.0))?;

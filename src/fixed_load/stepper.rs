@@ -20,8 +20,8 @@ use crate::{Error, Grid};
 #[derive(Debug)]
 pub(super) struct Stepper<'a> {
     settings: &'a Settings,
-    /// Greatest error: that of the settings, or less where that does not decide which nodes yield.
-    tolerance: f64,
+    /// Greatest error at present: that of the settings, or less where that does not decide which nodes yield.
+    present_tolerance: f64,
     hierarchy: &'a mut Hierarchy,
     hardness: Option<&'a Hardness>,
     continuation: Continuation,
@@ -43,9 +43,18 @@ impl<'a> Stepper<'a> {
         // What was spent before, if that ended with an error, is no part of the next solution.
         hierarchy.take_convolutions();
         let continuation = Continuation::default();
-        let tolerance = settings.tolerance;
+        let present_tolerance = settings.tolerance;
         let (last, yielded, iterations) = (None, Vec::new(), 0);
-        Self { settings, tolerance, hierarchy, hardness, continuation, last, yielded, iterations }
+        Self {
+            settings,
+            present_tolerance,
+            hierarchy,
+            hardness,
+            continuation,
+            last,
+            yielded,
+            iterations,
+        }
     }
 
     /// Begins at a solution.
@@ -144,7 +153,7 @@ impl<'a> Stepper<'a> {
     /// When a solution on the finest grid is good enough.
     fn criteria(&self, prescribed: Prescribed) -> Criteria {
         Criteria {
-            tolerance: self.tolerance,
+            tolerance: self.present_tolerance,
             floor: self.finest().least_length(prescribed),
             length: f64::INFINITY,
             max_iterations: self.settings.max_iterations,
@@ -180,7 +189,7 @@ impl<'a> Stepper<'a> {
         self.iterations = 0;
         if let Some(hardness) = self.hardness {
             let found = self.yield_to(hardness, prescribed, sum);
-            self.tolerance = self.settings.tolerance;
+            self.present_tolerance = self.settings.tolerance;
             self.yielded = found?;
             return self.solution(load);
         }
@@ -212,9 +221,11 @@ impl<'a> Stepper<'a> {
             let decision = self.yield_within_tolerance(hardness, prescribed, sum);
             match (decision, open) {
                 (Ok(Decision::Made(yielded)), _) => return Ok(yielded),
-                (Ok(Decision::Open { residual }), _) if self.tolerance > LOOSEST_DECIDED => {
+                (Ok(Decision::Open { residual }), _)
+                    if self.present_tolerance > LOOSEST_DECIDED =>
+                {
                     open = open.or(Some(residual));
-                    self.tolerance *= DECIDED;
+                    self.present_tolerance *= DECIDED;
                 }
                 (Ok(Decision::Open { residual }), None)
                 | (Ok(Decision::Open { .. }) | Err(Error::NoConvergence { .. }), Some(residual)) => {

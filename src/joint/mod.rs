@@ -4,17 +4,16 @@
 //!
 //! ```
 //! use asperity::joint::{Conduction, FeProgram, InterfaceTable};
-//! use asperity::loading::History;
 //! use asperity::{Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine};
 //!
 //! # fn main() -> Result<(), asperity::Error> {
 //! let (e_star, steel) = (115e9, 1.0 / 45.0); // Pa; thermal resistivity [m K/W] of either body
 //! let grid = Grid::square(32, 1.25e-3)?;
 //! let half_space = PeriodicBoussinesq::new(grid, e_star)?;
-//! let path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
+//! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
 //!     .max_area_fraction(0.3)
 //!     .build()?;
-//! let history: History = path.collect::<Result<_, _>>()?;
+//! let history = path.run()?;
 //!
 //! let heat = Conduction::thermal(e_star, steel + steel)?;
 //! let table = InterfaceTable::builder(&history).conduction(heat).friction(0.2, 1.2).tolerance(0.01).build()?;

@@ -75,8 +75,9 @@ impl History {
         &self.states
     }
 
-    /// The same states, with what the body is made of; the history of a record knows it. Conductance, slip and creep
-    /// are refused where it has layers for which their theories do not hold; where nothing is known of it they are
+    /// The same states, with what the body is made of; the history of a record knows it, and that of
+    /// [`LoadingPath::run`](crate::LoadingPath::run), and of states alone nothing is known. Conductance, slip and creep
+    /// are refused where the body has layers for which their theories do not hold; where nothing is known they are
     /// computed as on a half-space.
     #[must_use]
     pub fn on(mut self, layering: Layering) -> Self {

@@ -13,8 +13,9 @@ use super::run::{LoadingRun, LoadingTimings};
 use super::single::Single;
 use super::state::LoadingState;
 use crate::contact::ContactTarget;
+use crate::kernel::Layering;
 use crate::updater::LinearUpdater;
-use crate::{Error, Grid, Problem};
+use crate::{Error, Grid, InfluenceKernel, Problem};
 
 /// A loading path under way, whatever solves on its contact: what a [`LoadingSolver`](super::LoadingSolver) is but for
 /// the type of its updater.
@@ -200,6 +201,13 @@ impl LoadingPath {
     #[must_use]
     pub fn problem(&self) -> &Problem {
         self.run.surface()
+    }
+
+    /// What the body of the problem is made of, for theories by which the states are read.
+    #[must_use]
+    pub fn layering(&self) -> Layering {
+        let table = self.problem().table();
+        table.origin().layering(table.boundary())
     }
 
     /// Where the path is to end, whichever comes first; a number of nodes is given as a fraction of the area.

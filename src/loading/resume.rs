@@ -9,14 +9,15 @@ use crate::updater::Left;
 use crate::{Error, Grid};
 
 impl LoadingPath {
-    /// All states to come, up to the end of the path.
+    /// All states to come, up to the end of the path, with what the body is made of ([`History::on`]).
     ///
     /// # Errors
     ///
     /// The first error of a state. The states before it are lost then, and [`Self::state`] is the last of them: iterate
     /// to keep them.
     pub fn run(&mut self) -> Result<History, Error> {
-        self.by_ref().collect()
+        let layering = self.layering();
+        self.by_ref().collect::<Result<History, Error>>().map(|states| states.on(layering))
     }
 
     /// Goes on behind states that this path yielded before.

@@ -9,7 +9,6 @@
 ///
 /// Values on the contact are in the order of the indices of its nodes.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[doc(hidden)]
 pub(crate) struct Kept {
     /// Greatest gap in contact that solutions leave, relative to the approach.
     pub tolerance: f64,
@@ -42,7 +41,6 @@ pub(crate) struct Kept {
 
 /// What iterations go on from beside nodes that have yielded.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[doc(hidden)]
 pub(crate) struct KeptBeside {
     /// How many of the proposed nodes, the first ones, were out of contact.
     pub outside: usize,
@@ -61,7 +59,6 @@ pub(crate) struct KeptBeside {
 ///
 /// Displacements do not follow from pressures bit for bit: they have been followed from one solution to the next.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[doc(hidden)]
 pub(crate) struct KeptField {
     pub pressure: Vec<f64>,
     /// Empty if it is not known.

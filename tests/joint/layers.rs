@@ -82,6 +82,10 @@ fn theories_of_half_spaces_are_refused_on_layers() {
     let targets = [asperity::ContactTarget::Load(0.5 * coat.states().last().unwrap().contact.load)];
     let (part, _) = coat.history().ending_at(&grid, &targets).unwrap();
     assert_eq!(part.layering(), Layering::Several);
+    let kernel = free(body(50e9, STEEL));
+    let mut path =
+        LoadingSolver::builder(&rough(), &kernel).max_area_fraction(0.1).build().unwrap();
+    assert_eq!(path.run().unwrap().layering(), Layering::Several);
     let states: History = coat.states().iter().copied().collect();
     assert_eq!(states.layering(), Layering::Unknown);
     assert!(states.on(Layering::Several).layering().check(Theory::Slip).is_err());

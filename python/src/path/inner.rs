@@ -73,9 +73,7 @@ pub(super) struct Inner {
 
 impl Inner {
     pub(super) fn live(engine: Engine, bodies: &[(f64, f64)], means: Means) -> Self {
-        let table = engine.problem().table();
-        let layering = table.origin().layering(table.boundary());
-        let history = Arc::new(loading::History::default().on(layering));
+        let history = Arc::new(loading::History::default().on(engine.layering()));
         Self { source: Source::Live(Box::new(engine)), history, bodies: bodies.to_vec(), means }
     }
 

@@ -8,10 +8,8 @@ use crate::{Error, plane_strain_modulus};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layer {
     /// Young's modulus E \[Pa\].
-    #[cfg_attr(feature = "serde", serde(alias = "young"))]
     pub youngs_modulus: f64,
     /// Poisson's ratio ν, above −1 and at most ½.
-    #[cfg_attr(feature = "serde", serde(alias = "poisson"))]
     pub poissons_ratio: f64,
     /// Thickness h \[m\].
     pub thickness: f64,
@@ -26,10 +24,8 @@ pub enum Base {
     /// An elastic half-space.
     HalfSpace {
         /// Young's modulus E \[Pa\].
-        #[cfg_attr(feature = "serde", serde(alias = "young"))]
         youngs_modulus: f64,
         /// Poisson's ratio ν, above −1 and at most ½.
-        #[cfg_attr(feature = "serde", serde(alias = "poisson"))]
         poissons_ratio: f64,
     },
 }
