@@ -222,7 +222,7 @@ impl Surface {
     /// What was noticed in reading, and what was assumed.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        self.notes.clone()
+        self.notes.iter().map(|note| in_python(note)).collect()
     }
 
     /// Whether the surface was said to repeat with its sides; None if nothing was said.

@@ -31,8 +31,9 @@
 //! # Which index is x
 //!
 //! Everywhere in this crate x is the first index, `[(ix, iy)]`. In all formats but `.npy` the rows of the file are
-//! those of an image: row `iy`, and within it column `ix`. Rows are turned round only where the file has them from
-//! below (Nanoscope, Igor, Nanosurf, Wyko):
+//! those of an image: row `iy`, and within it column `ix`. Rows are turned round in Nanoscope, Igor, Nanosurf and Wyko
+//! alone, which have them from below; other formats differ, so that two surfaces which face each other have to be of one
+//! format:
 //!
 //! ```text
 //!   the file (an image)               the matrix                on the half-space

@@ -14,8 +14,9 @@ pub(super) struct Header {
     /// Spacing along both, or along x, and that along y.
     pixel: Option<Length>,
     pixel_y: Option<Length>,
-    /// Unit of sides and spacings that have none of their own.
+    /// Unit of sides and spacings that have none of their own, and that of those along y if it has another.
     pub(super) side_unit: Option<String>,
+    pub(super) side_unit_y: Option<String>,
     pub(super) value_unit: Option<String>,
     /// What the numbers have to be multiplied by to be in their unit.
     pub(super) factor: Option<f64>,
@@ -68,6 +69,7 @@ const VALUE_UNIT: &str = "value units|jednotky hodnot|einheiten|werteinheiten|un
 /// What other programs call it.
 const DATA_UNIT: &str = "data unit|unit data|exported image units|z-unit|z unit|z units|zunit|unit z|height unit|height units";
 const SIDE_UNIT: &str = "x-unit|x unit|x units|xunit|unit x|xy unit|unit xy|xyunit";
+const SIDE_UNIT_Y: &str = "y-unit|y unit|y units|yunit|unit y";
 /// What stands above maps alone, besides sides and numbers of columns and rows.
 const OF_MAP: &str = "scale y|exported image units";
 const COLUMNS: &str = "x-pixels|nx|ncols|number of columns";
@@ -150,6 +152,8 @@ impl Header {
             self.set_value_unit(some(value));
         } else if is(SIDE_UNIT) {
             self.side_unit = some(value);
+        } else if is(SIDE_UNIT_Y) {
+            self.side_unit_y = some(value);
         } else if is(COLUMNS) {
             self.columns = value.parse().ok();
             is_read = self.columns.is_some();
@@ -250,6 +254,12 @@ impl Header {
         Ok([x.or(of_x).cloned(), z.or(of_z).cloned()])
     }
 
+    /// Units of what has none of its own, along x and y.
+    pub(super) fn side_units(&self) -> [Option<&String>; 2] {
+        let of_x = self.side_unit.as_ref();
+        [of_x, self.side_unit_y.as_ref().or(of_x)]
+    }
+
     /// Makes NaN of the numbers that stand for missing heights.
     pub(super) fn remove_marks(&self, numbers: &mut [f64], notes: &mut Vec<String>) {
         if let Some(missing) = self.missing {
@@ -344,7 +354,10 @@ impl Header {
             (None, Some(width), Some(height)) => (width, height, nx, ny),
             _ => return Ok((None, None)),
         };
-        let [unit_x, unit_y] = [x, y].map(|side| side.unit.as_ref().or(self.side_unit.as_ref()));
+        let [of_x, of_y] = self.side_units();
+        // A pixel that stands for both sides is in the unit of x.
+        let of_y = if std::ptr::eq(x, y) { of_x } else { of_y };
+        let (unit_x, unit_y) = (x.unit.as_ref().or(of_x), y.unit.as_ref().or(of_y));
         let ratio = ratio(unit_y, unit_x).ok_or_else(|| {
             let [width, height] = [unit_x, unit_y].map(|unit| unit.map_or("", |unit| unit));
             fault!("the header gives the width in '{width}', but the height in '{height}'")

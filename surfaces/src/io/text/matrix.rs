@@ -1,7 +1,7 @@
 //! A text whose rows are those of the map.
 
 use super::axes::Axes;
-use super::header::Header;
+use super::header::{self, Header};
 use super::table::Table;
 use crate::io::bytes::shape;
 use crate::io::fault::Fault;
@@ -23,7 +23,12 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
     let (mut cell, mut lateral_unit) = header.cell(shape)?;
     match &mut cell {
         Some(cell) => notes.extend(header.fit_to_steps(cell, shape, axes.steps)),
-        None => (cell, lateral_unit) = (axes.cell, header.side_unit.clone()),
+        None => {
+            let [of_x, of_y] = header.side_units();
+            let ratio = header::ratio(of_y, of_x);
+            cell = axes.cell.map(|(dx, dy)| (dx, dy * ratio.unwrap_or(1.0)));
+            lateral_unit = of_x.filter(|_| ratio.is_some()).cloned();
+        }
     }
     if table.has_margins && header.has_sides() {
         notes.push(

@@ -113,6 +113,7 @@ fn generic(
         if let Some(columns) =
             names.map(|names| Columns::named(names, &table)).transpose()?.flatten()
         {
+            table.drop_empty_end();
             let map = points::map(&columns, &table)?;
             return list(header, Box::new((columns, map)), &table);
         }
@@ -123,6 +124,9 @@ fn generic(
             names.unwrap_or_default(),
             table.columns
         );
+    }
+    if names::of_profile(header, &table).is_some() {
+        table.drop_empty_end();
     }
     // Of commas a layout says nothing.
     ensure!(
@@ -156,11 +160,14 @@ fn generic(
 fn list(header: &Header, list: List, table: &Table) -> Result<Channel, Fault> {
     let (columns, map) = *list;
     let mut channel = map.channel()?;
-    let [x, y, z] = &columns.units;
-    [channel.lateral_unit, channel.height_unit] = header.units([x.as_ref(), z.as_ref()])?;
+    let [x, y, z] = columns.units.each_ref().map(Option::as_ref);
+    let [of_x, of_y] = header.side_units();
+    // The unit of y in a line of its own is another than that of x.
+    let [x, y] = if of_x == of_y { [x, y] } else { [x.or(of_x), y.or(of_y)] };
+    [channel.lateral_unit, channel.height_unit] = header.units([x, z])?;
     if x.is_some() || y.is_some() {
         // Coordinates in two units have none in common, unless both are lengths.
-        let ratio = header::ratio(y.as_ref(), x.as_ref());
+        let ratio = header::ratio(y, x);
         channel.cell = channel.cell.map(|(dx, dy)| (dx, dy * ratio.unwrap_or(1.0)));
         channel.lateral_unit = channel.lateral_unit.filter(|_| ratio.is_some());
     }

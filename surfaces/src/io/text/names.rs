@@ -47,6 +47,10 @@ impl Columns {
     }
 
     fn of(names: &[String]) -> Result<Option<Self>, Fault> {
+        // Those of a profile.
+        if names.len() < 3 {
+            return Ok(None);
+        }
         let kinds: Vec<Option<Kind>> = names.iter().map(|name| kind_of(name)).collect();
         let only = |wanted| {
             let mut places = (0..kinds.len()).filter(|k| kinds.get(*k) == Some(&Some(wanted)));
@@ -164,9 +168,18 @@ fn from_letters(line: &str) -> Vec<String> {
     names
 }
 
-/// The unit in a name: in brackets, or its last word.
+/// The unit in a name: in brackets, or its last word; with a factor before it, which nobody can read as a unit.
 fn unit(name: &str) -> Option<String> {
     let is_length = |word: &str| word.parse::<LengthUnit>().is_ok();
+    let has_digit = |word: &str| word.contains(|c: char| c.is_ascii_digit());
+    let last_of = |text: &str| {
+        let mut words = words(text);
+        let last = words.next_back().filter(|word| is_length(word))?;
+        let factor = words.next_back().filter(|word| has_digit(word));
+        // The first word is what has the unit.
+        let factor = factor.filter(|_| words.next().is_some());
+        Some(factor.map_or_else(|| last.to_string(), |factor| format!("{factor} {last}")))
+    };
     let mut brackets = name.split(['(', '[', '{', '<']).skip(1).map(|rest| {
         let inside = rest.split([')', ']', '}', '>']).next().unwrap_or_default().trim();
         inside.strip_prefix("in ").unwrap_or(inside).trim()
@@ -174,6 +187,6 @@ fn unit(name: &str) -> Option<String> {
     let of_brackets = brackets.clone().find(|unit| is_length(unit)).or_else(|| {
         brackets.find(|unit| !unit.is_empty() && words(unit).all(|word| kind(word).is_none()))
     });
-    let last = || words(name).skip(1).last().filter(|word| is_length(word));
-    of_brackets.or_else(last).map(str::to_string)
+    let last = || last_of(name).filter(|_| words(name).nth(1).is_some());
+    of_brackets.map(str::to_string).or_else(last)
 }

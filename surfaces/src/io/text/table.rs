@@ -43,6 +43,15 @@ impl Table {
         self.values.len() / self.columns.max(1)
     }
 
+    /// Takes away rows at the end in which all cells are empty, as spreadsheets write them below points.
+    pub(super) fn drop_empty_end(&mut self) {
+        let rows = self.values.rchunks_exact(self.columns.max(1));
+        let empty = rows.take_while(|row| row.iter().all(|cell| cell.is_nan())).count();
+        if empty < self.rows() {
+            self.values.truncate(self.values.len() - empty * self.columns);
+        }
+    }
+
     /// How the text is written.
     pub(super) fn told(&self) -> String {
         let margins = if self.has_margins {

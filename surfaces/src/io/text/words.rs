@@ -11,7 +11,7 @@ pub(super) enum Kind {
     Z,
 }
 
-pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
+pub(super) fn words(text: &str) -> impl DoubleEndedIterator<Item = &str> {
     let parts = |c: char| c.is_whitespace() || PARTS.contains(c);
     text.split(parts).filter(|word| !word.is_empty())
 }

@@ -34,6 +34,49 @@ fn factors_are_used_or_refused() -> TestResult {
     Ok(())
 }
 
+fn assert_refused_unit(text: String, unit: &str) {
+    let refused = ReadOptions::new().read_bytes(text, "list.csv").err();
+    assert!(refused.as_ref().is_some_and(|error| error.to_string().contains(unit)), "{refused:?}");
+}
+
+/// A number before the unit in a name would be a factor, which is not read: it is no part that may be left out.
+#[test]
+fn factors_in_names_are_refused() -> TestResult {
+    let list = |name: &str| format!("x [mm];y [mm];{name}\n0;0;1\n1;0;2\n0;1;3\n1;1;5\n");
+    for (name, unit) in [
+        ("Z x1000 um", "x1000 um"),
+        ("Z 0.1 nm", "0.1 nm"),
+        ("z / 10 nm", "10 nm"),
+        ("z (x 10 nm)", "10 nm"),
+        ("z (0.1 nm)", "0.1 nm"),
+    ] {
+        assert_refused_unit(list(name), unit);
+    }
+    for name in ["Z2 nm", "z nm", "z1 (nm)", "Z [nm]", "z2_nm"] {
+        let read = ReadOptions::new().read_bytes(list(name), "list.csv")?;
+        assert_eq!(read.heights[(1, 1)], 5e-9, "{name}");
+    }
+    Ok(())
+}
+
+/// Along y there may be another unit.
+#[test]
+fn a_unit_along_y_is_read() -> TestResult {
+    let units = "# x unit: mm\n# y unit: um\n# z unit: nm\n";
+    for text in [
+        format!("{units}# Width: 4\n# Height: 4000\n{ROWS}"),
+        format!("{units}# Width: 4 mm\n# Height: 4000\n{ROWS}"),
+        format!("{units}x y z\n0 0 1\n1 0 2\n0 1000 3\n1 1000 5\n"),
+    ] {
+        let read = ReadOptions::new().read_bytes(&text, "map.txt")?;
+        let (dx, dy) = read.cell.unwrap_or_default();
+        assert!((dx / 1e-3 - 1.0).abs() < 1e-15 && (dy / 1e-3 - 1.0).abs() < 1e-15, "{text}");
+    }
+    let square = format!("{units}# Pixel size: 2\n{ROWS}");
+    assert_eq!(ReadOptions::new().read_bytes(square, "map.txt")?.cell, Some((2e-3, 2e-3)));
+    Ok(())
+}
+
 /// Another unit of the numbers takes the place of that in the file together with its factor, and that is said.
 #[test]
 fn a_unit_that_is_given_leaves_no_factor() -> TestResult {

@@ -26,6 +26,20 @@ fn columns_are_profiles() -> TestResult {
     Ok(())
 }
 
+/// Called x and y as on paper, and with the empty rows that spreadsheets write below.
+#[test]
+fn profiles_of_spreadsheets_are_read() -> TestResult {
+    for names in ["X (mm);Y (um)", "x [mm]; y [um]", "x [mm];z [um]"] {
+        for end in ["", ";\n", ";\n;\n;\n"] {
+            let text = format!("{names}\n0;5\n0.5;6\n1;7\n1.5;9\n{end}");
+            let measured = ReadOptions::new().read_bytes(&text, "profile.csv")?;
+            assert_eq!((measured.heights.shape(), measured.cell), ((4, 1), Some((5e-4, 5e-4))));
+            assert!((measured.heights[(3, 0)] / 9e-6 - 1.0).abs() < 1e-15, "{text}");
+        }
+    }
+    Ok(())
+}
+
 /// Names say which of two columns has the positions.
 #[test]
 fn heights_may_stand_before_positions() -> TestResult {
