@@ -169,6 +169,16 @@ impl Problem {
         Convolution::clone(&self.convolution)
     }
 
+    /// The tabulated kernel, shared.
+    pub(crate) fn shared_table(&self) -> Arc<KernelTable> {
+        Arc::clone(&self.table)
+    }
+
+    /// Whether its kernel is tabulated in this very table.
+    pub(crate) fn has_table(&self, table: &Arc<KernelTable>) -> bool {
+        Arc::ptr_eq(&self.table, table)
+    }
+
     /// The right-hand sides (g, 1, s) at a node of the grid.
     pub(crate) fn rhs(&self, node: usize) -> [f64; Self::RHS] {
         [self.gap[node], 1.0, self.row_sums()[node]]

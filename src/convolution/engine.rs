@@ -56,9 +56,14 @@ pub(super) struct Scratch<T> {
     work: Workspace<T>,
 }
 
-/// Parts into which the work on a grid is divided.
-fn parts(grid: &Grid) -> usize {
-    if cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES { PARTS } else { 1 }
+/// Parts into which the work on a grid is divided: so few that their working memory is no more than a padded field, which
+/// matters on strips.
+fn parts<T: Real>(grid: &Grid, transforms: &Transforms<T>) -> usize {
+    let (px, py) = transforms.padded();
+    match cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES {
+        true => (px * py / Scratch::lines(transforms)).clamp(1, PARTS),
+        false => 1,
+    }
 }
 
 impl Engine<f64> {
@@ -225,7 +230,7 @@ impl<T: Real> Engine<T> {
         let spectra = BLOCK * (blocks(rows) * columns + blocks(columns) * rows);
         columns * padded * size_of::<T>()
             + spectra * size_of::<Complex<T>>()
-            + parts(grid) * scratch
+            + parts(grid, transforms) * scratch
     }
 
     /// Writes the displacement under `pressure` into `displacement`.
@@ -287,7 +292,7 @@ impl<T: Real> Spectra<T> {
         Self {
             rows: vec![T::ZERO; blocks(rows) * BLOCK * columns],
             columns: vec![T::ZERO; blocks(columns) * BLOCK * rows],
-            scratch: vec![scratch; parts(grid)],
+            scratch: vec![scratch; parts(grid, transforms)],
         }
     }
 

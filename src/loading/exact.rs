@@ -72,6 +72,11 @@ impl Exact {
         }
         let (touches, approach) = (most_nodes - run.contact_nodes(), run.scalars.approach());
         let size = run.affordable(updater, self.next_size(run, log, touches))?;
+        if self.is_behind && !run.is_closed_to_rounding() {
+            // What a solution behind yields leaves open would grow from window to window.
+            run.field.forget();
+            self.is_behind = false;
+        }
         run.renew_field(updater, approach)?;
         let Survey { first, beyond, rates } = self.survey(run)?;
         if self.ranking.is_empty() {

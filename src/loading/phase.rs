@@ -31,7 +31,7 @@ impl Phase {
         let updater: Box<dyn LinearUpdater> = Box::new(updater);
         let own = innermost(&*updater);
         if let Some(iterations) = own.downcast_ref::<ConjugateGradient>() {
-            return Self::Iterations(Box::new(iterations.clone()));
+            return Self::Iterations(Box::new(iterations.afresh()));
         }
         let may_end = hand_over.unwrap_or_else(|| own.is::<Handover>());
         Self::Factor { updater, log: FactorLog::default(), may_end }

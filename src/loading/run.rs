@@ -1,6 +1,6 @@
 //! A path under way: what its procedures share.
 
-use super::tuning::{SHALLOW, TOLERANCE};
+use super::tuning::{LEFT_OPEN, SHALLOW, TOLERANCE};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
@@ -193,6 +193,14 @@ impl LoadingRun {
         span: f64,
     ) -> Result<(), Error> {
         self.field.advance(&Behind::on(&self.problem, &self.contact, approach), iterations, span)
+    }
+
+    /// Whether the present solution leaves gaps in contact that are rounding.
+    pub(super) fn is_closed_to_rounding(&self) -> bool {
+        let most = LEFT_OPEN * (self.problem.greatest_gap() + self.scalars.approach());
+        let mut left =
+            self.contact.order().iter().map(|node| self.field.left_at(&self.problem, *node));
+        left.all(|[gap, _]| gap.abs() <= most)
     }
 
     /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n rounding errors of

@@ -180,6 +180,9 @@ pub(super) const OF_RESIDUAL_BEYOND: f64 = 2.0;
 /// triangular solves, whose errors stay below 1e-13 of the greatest displacement; the condition of the
 /// influence matrix grows with the side of the grid only, so that pressures lose two or three digits.
 pub(super) const TOLERANCE: f64 = 1e-10;
+/// What a solution behind a window of yields may leave open, relative to the same: some hundred rounding errors. Where
+/// it is more the next window begins with a solution of the factor.
+pub(super) const LEFT_OPEN: f64 = 1e-14;
 /// How many times as long as wide cells may be for that to hold of plastic depths: they are off as the pressures are at
 /// which nodes yield, and the condition is some 20 times the ratio of the sides (4 × 8 nodes, 2600 : 1: 5·10⁴, a depth
 /// off by 1.1·10⁻¹⁰). On longer cells the tolerance grows with the ratio.

@@ -13,7 +13,7 @@ use asperity::updater::{
 };
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
-    PeriodicBoussinesq, Problem, Spectral,
+    LoadingState, PeriodicBoussinesq, Problem, Spectral,
 };
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -229,6 +229,33 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
         }
         let _ = updater.bytes(usize::MAX, usize::MAX);
     }
+}
+
+/// Iterations that have solved on one kernel answer on another as new ones do, alone and on a path.
+#[test]
+fn iterations_forget_another_kernel() {
+    let heights = DMatrix::from_fn(7, 5, |ix, iy| ((3 * ix + 5 * iy) as f64).sin());
+    let surface = HeightMap::new(heights).unwrap();
+    let kernels = [1.0, 2.0].map(|e_star| {
+        Boussinesq::new(Grid::new(7, 5, 1.0 / e_star, 1.0).unwrap(), e_star).unwrap()
+    });
+    let problems = kernels.each_ref().map(|kernel| Problem::new(&surface, kernel).unwrap());
+    let solve = |updater: &mut ConjugateGradient, problem: &Problem| -> Vec<f64> {
+        let contact = ContactSequence::with_order(problem.grid(), [3, 11, 17, 24]).unwrap();
+        let mut solution = Solution::default();
+        updater.solve(problem, &contact, 4, 3.0, &mut solution).unwrap();
+        solution.pressure
+    };
+    let mut used = ConjugateGradient::new();
+    let first = solve(&mut used, &problems[0]);
+    let second = solve(&mut used, &problems[1]);
+    assert_eq!(second, solve(&mut ConjugateGradient::new(), &problems[1]));
+    assert!(first != second);
+    let path = |updater: ConjugateGradient| -> Vec<LoadingState> {
+        let builder = LoadingSolver::builder(&surface, &kernels[0]).updater(updater);
+        builder.build().unwrap().map(Result::unwrap).collect()
+    };
+    assert_eq!(path(used), path(ConjugateGradient::new()));
 }
 
 fn problems() -> [Problem; 2] {

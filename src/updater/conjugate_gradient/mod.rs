@@ -97,6 +97,11 @@ impl ConjugateGradient {
         Ok(updater)
     }
 
+    /// The same without anything that it has solved before.
+    pub(crate) fn afresh(&self) -> Self {
+        Self { criteria: self.criteria, solutions: None }
+    }
+
     /// Solver and solutions of a problem, made at first use.
     ///
     /// # Errors
@@ -109,7 +114,10 @@ impl ConjugateGradient {
         contact: &ContactSequence,
     ) -> Result<&mut Solutions, Error> {
         problem.check_nodes(contact.order())?;
-        let solutions = self.solutions.get_or_insert_with(|| Solutions::new(problem));
+        // What is left of solutions on another kernel is none on this one.
+        let known = self.solutions.take();
+        let known = known.filter(|known| known.count() > 0 || problem.has_table(known.table()));
+        let solutions = self.solutions.insert(known.unwrap_or_else(|| Solutions::new(problem)));
         solutions.grid().check_shape(problem.grid().shape())?;
         Ok(solutions)
     }

@@ -4,6 +4,7 @@ mod kept;
 
 use std::borrow::Cow;
 use std::mem;
+use std::sync::Arc;
 
 use super::equilibrium::Equilibrium;
 use super::instants::Instants;
@@ -15,6 +16,7 @@ use super::solver::Solver;
 use super::tolerances::{Aim, Criteria, Tolerances};
 use super::tuning::OF_PRESSURE;
 use crate::contact::ContactSequence;
+use crate::kernel::KernelTable;
 use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::updater::{Behind, Beside, Proposal, Schur, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem};
@@ -22,6 +24,7 @@ use crate::{Boundary, Error, Grid, Problem};
 /// The parts that depend on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
 pub(super) struct Solutions {
+    table: Arc<KernelTable>,
     solver: Solver,
     neighbourhood: Neighbourhood,
     now: Equilibrium,
@@ -79,6 +82,7 @@ impl Solutions {
     pub(super) fn new(problem: &Problem) -> Self {
         let nodes = problem.grid().nodes();
         Self {
+            table: problem.shared_table(),
             solver: Solver::new(problem),
             neighbourhood: Neighbourhood::new(problem),
             now: Equilibrium::zero(nodes),
@@ -114,6 +118,11 @@ impl Solutions {
         self.solved = contact.order().to_vec();
         (self.passage, self.may_yield) = (None, false);
         self.plastic_sums = PlasticSums::default();
+    }
+
+    /// The kernel that they are solutions on.
+    pub(super) fn table(&self) -> &Arc<KernelTable> {
+        &self.table
     }
 
     /// The grid of the problem.
