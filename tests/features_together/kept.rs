@@ -12,7 +12,8 @@ pub(super) fn record(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let written = LoadingRecord::new(&pressed.path, pressed.history.clone())?;
     let read = through_a_file(&written);
     assert_eq!(read.history(), &pressed.history, "{name}");
-    assert_eq!(read.history().layering(), pressed.row.kernel.origin().layering(), "{name}");
+    let kernel = &pressed.row.kernel;
+    assert_eq!(read.history().layering(), kernel.origin().layering(kernel.boundary()), "{name}");
     assert_eq!(read.settings(), written.settings(), "{name}");
     assert_eq!(read.hardness_map()?, pressed.path.hardness_map(), "{name}");
     assert_eq!(read.hardness_map()?, pressed.row.hardness, "{name}");
