@@ -43,6 +43,8 @@ pub(crate) const CREEP: Kind = Kind {
     always: "creep.csv",
     sometimes: &["creep_cycles.", "leak_over_time.", "touch_times."],
 };
+pub(crate) const STRESS: Kind =
+    Kind { name: "stress", always: "stress.csv", sometimes: &["section_", "stress.vti"] };
 pub(crate) const LEAK: Kind =
     Kind { name: "leak", always: "leak.csv", sometimes: &["flux_", "fluid_pressure_", "leak."] };
 

@@ -19,6 +19,7 @@ use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
+use crate::earlier::{self, Earlier};
 use crate::material::Material;
 use crate::values::{ANGLE, FORCE, LENGTH, PRESSURE, SHARE, poisson};
 use body::Moment;
@@ -118,15 +119,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     panel::register_font()?;
     outcome::create_folder(directory)?;
+    let earlier = Earlier::of(&earlier::STRESS, directory, None);
     let mut outcome = Outcome::default();
     let place = |name: &str| directory.join(name);
     outcome.written(table::write(&moment, &bodies, &place("stress.csv")));
     outcome.written(charts::draw(&bodies, &place("stress.png")));
-    let Some(body) = bodies.first() else { return outcome.finish() };
+    let Some(body) = bodies.first() else { return earlier.finish(outcome) };
     outcome.all_written(maps::draw(&moment, body, directory));
     outcome.all_written(section::draw(&moment, body, directory));
     if let Some(depths) = options.volume {
         outcome.written(section::write_volume(&moment, body, depths as usize, place("stress.vti")));
     }
-    outcome.finish()
+    earlier.finish(outcome)
 }
