@@ -16,9 +16,16 @@ use crate::walk::{Demands, Walk};
 /// Nodes of a side: more than 144 nodes in all, which [`ConjugateGradient`] takes in as a whole.
 const SIDES: (usize, usize) = (13, 24);
 
+/// Cells of a periodic half-space on which nodes yield.
+const LONGEST: f64 = 100.0;
+/// How far states of different windows may be apart, for each unit of the ratio of the sides: fifty times what they
+/// were on 24 × 24 nodes of uncorrelated heights.
+const AGREEMENT: f64 = 1e-12;
+
 /// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and
 /// follows its path to full contact with a factor and without. The path without has the same events and is as exact as
-/// it says, and some state of that with a factor is looked at densely.
+/// it says, and some state of that with a factor is looked at densely. Sometimes another one, with a hardness, has the
+/// states that it has with windows of one event.
 ///
 /// # Errors
 ///
@@ -27,7 +34,54 @@ pub fn large_contacts(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
     let shape = (draw.whole(SIDES.0, SIDES.1), draw.whole(SIDES.0, SIDES.1));
     let sample = Sample::half_space(&mut draw, shape, ConjugateGradient::MAX_ASPECT)?;
-    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+    let mut tally = run(&sample, &mut draw).map_err(|v| v.during(sample.context()))?;
+    if draw.once_in(3) {
+        let shape = (draw.whole(SIDES.0, SIDES.1), draw.whole(SIDES.0, SIDES.1));
+        let mut sample = Sample::half_space(&mut draw, shape, LONGEST)?;
+        sample.harden(&mut draw);
+        let window = draw.one_of(None, &[Some(8), Some(64)]);
+        tally += windows_agree(&sample, window).map_err(|v| v.during(sample.context()))?;
+    }
+    Ok(tally)
+}
+
+/// Where nodes yield a path with a factor has the same states whatever its windows.
+fn windows_agree(sample: &Sample, window: Option<usize>) -> Verdict {
+    let states = |window: Option<usize>| {
+        let variant = Variant { window, ..Variant::REFERENCE };
+        match variant.run(sample, &[], |_, _| Ok(()))? {
+            Run::Followed { states, failure: None, .. } => Ok(states),
+            Run::Refused(error) | Run::Followed { failure: Some(error), .. } => {
+                Err(Violation::new(format!("windows of {window:?}: {error}")))
+            }
+        }
+    };
+    let (found, single) = (states(window)?, states(Some(1))?);
+    ensure!(
+        found.len() == single.len(),
+        "windows of {window:?}: {} states, and one by one {}",
+        found.len(),
+        single.len()
+    );
+    let Some(last) = single.last() else { return Ok(Tally::default()) };
+    let grid = sample.kernel.grid();
+    // Rounding of heights and pressures, which the condition multiplies: some 20 times the ratio of the sides.
+    let rounding = AGREEMENT * grid.cell_aspect();
+    // Of a flat surface what its pressures displace a cell by.
+    let own = sample.kernel.coefficient(0, 0) / grid.nominal_area();
+    let height = sample.surface.peak_to_valley() + last.contact.approach.abs();
+    let length = height + own * last.contact.load;
+    let force = length / own;
+    let mut tally = Tally::default();
+    for (state, expected) in found.iter().zip(&single) {
+        let (own, other) = (state.contact, expected.contact);
+        let what = |violation: Violation| {
+            violation.during(format!("windows of {window:?}: {state:?} in place of {expected:?}"))
+        };
+        tally.close("approach", own.approach, other.approach, rounding * length).map_err(what)?;
+        tally.close("load", own.load, other.load, rounding * force).map_err(what)?;
+    }
+    Ok(tally)
 }
 
 fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {

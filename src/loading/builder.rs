@@ -168,7 +168,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
 
     /// Ends the path at a target: at exactly this load, mean pressure, approach or mean gap, or with as many nodes in
     /// contact as fit into this fraction of the nominal area. Of several targets the first one reached
-    /// counts.
+    /// counts. A target beyond full contact is not reached: the path ends there
+    /// ([`LoadingEnd::FullContact`](super::LoadingEnd::FullContact)), and [`History::at`](super::History::at) reads
+    /// what lies beyond.
     pub fn until(mut self, target: ContactTarget) -> Self {
         self.settings.targets.push(target);
         self
