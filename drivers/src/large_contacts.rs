@@ -35,9 +35,12 @@ pub fn large_contacts(bytes: &[u8]) -> Verdict {
     let shape = (draw.whole(SIDES.0, SIDES.1), draw.whole(SIDES.0, SIDES.1));
     let sample = Sample::half_space(&mut draw, shape, ConjugateGradient::MAX_ASPECT)?;
     let mut tally = run(&sample, &mut draw).map_err(|v| v.during(sample.context()))?;
-    if draw.once_in(3) {
+    if draw.once_in(2) {
         let shape = (draw.whole(SIDES.0, SIDES.1), draw.whole(SIDES.0, SIDES.1));
-        let mut sample = Sample::half_space(&mut draw, shape, LONGEST)?;
+        let mut sample = match draw.once_in(3) {
+            true => Sample::half_space(&mut draw, shape, LONGEST)?,
+            false => Sample::of_long_cells(&mut draw, shape)?,
+        };
         sample.harden(&mut draw);
         let window = draw.one_of(None, &[Some(8), Some(64)]);
         tally += windows_agree(&sample, window).map_err(|v| v.during(sample.context()))?;

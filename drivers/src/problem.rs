@@ -60,6 +60,23 @@ impl Sample {
             .map_err(|error| Violation::new(format!("a sensible problem was refused: {error}")))
     }
 
+    /// Draws heights and a periodic half-space with cells of all lengths that are drawn elsewhere, in units of one.
+    pub(crate) fn of_long_cells(
+        draw: &mut Draw<'_>,
+        (nx, ny): (usize, usize),
+    ) -> Result<Self, Violation> {
+        let made = |draw: &mut Draw<'_>| -> Result<Self, Error> {
+            let surface = HeightMap::new(surfaces::heights(draw, (nx, ny)))?;
+            let class = draw.one_of(Class::Spectral, &[Class::Periodic]);
+            let aspect = draw.one_of(1.0, &[-1.0]) * draw.between(0.0, 2.5);
+            let grid = Grid::new(nx, ny, 10_f64.powf(0.5 * aspect), 10_f64.powf(-0.5 * aspect))?;
+            let kernel = kernels::make(draw, grid, 1.0, class)?;
+            Ok(Self { surface, kernel, class, hardness: None })
+        };
+        made(draw)
+            .map_err(|error| Violation::new(format!("a sensible problem was refused: {error}")))
+    }
+
     /// Draws a hardness, one for all nodes or one for each: from one under which contacts are points to one that no
     /// pressure comes to, some of them infinite.
     pub(crate) fn harden(&mut self, draw: &mut Draw<'_>) {
