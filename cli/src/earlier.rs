@@ -55,13 +55,15 @@ pub(crate) struct Earlier {
 }
 
 impl Earlier {
-    /// What is there before a run begins that reads a file, or none; nothing in a folder in which there was no such run.
-    pub(crate) fn of(kind: &Kind, folder: &Path, read: Option<&Path>) -> Self {
+    /// What is there before a run begins that reads a file, or none; nothing in a folder in which there was no such run,
+    /// and without a folder.
+    pub(crate) fn of(kind: &Kind, folder: Option<&Path>, read: Option<&Path>) -> Self {
         let is_of_kind = |file: &PathBuf| {
             let name = file.file_name().and_then(|name| name.to_str());
             name.is_some_and(|name| kind.sometimes.iter().any(|begin| name.starts_with(begin)))
         };
-        let entries = fs::read_dir(folder).ok().filter(|_| folder.join(kind.always).is_file());
+        let folder = folder.filter(|folder| folder.join(kind.always).is_file());
+        let entries = folder.and_then(|folder| fs::read_dir(folder).ok());
         let files = entries.into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
         let is_own = |file: &PathBuf| read.is_some_and(|read| is_same(read, file));
         let mut files: Vec<PathBuf> =

@@ -67,7 +67,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     panel::register_font()?;
     outcome::create_folder(directory)?;
-    let earlier = Earlier::of(&earlier::CREEP, directory, None);
+    let earlier = Earlier::of(&earlier::CREEP, Some(directory), None);
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
     let has_corners = options.history.is_some();

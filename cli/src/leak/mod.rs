@@ -125,7 +125,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     let directory = outcome::directory(options.out.as_deref(), options.json);
     directory.map_or(Ok(()), outcome::create_folder)?;
-    let earlier = directory.map(|directory| Earlier::of(&earlier::LEAK, directory, None));
+    let earlier = Earlier::of(&earlier::LEAK, directory, None);
     words::print_seal(&work.record, &work.seal);
 
     let mut outcome = Outcome::default();
@@ -174,8 +174,5 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     {
         answer!("{document}");
     }
-    match earlier {
-        Some(earlier) => earlier.finish(outcome),
-        None => outcome.finish(),
-    }
+    earlier.finish(outcome)
 }

@@ -70,7 +70,7 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
         if options.dry_run {
             return estimate(options, "");
         }
-        let earlier = Earlier::of(&earlier::PATH, &options.out, options.resume.as_deref());
+        let earlier = Earlier::of(&earlier::PATH, Some(&options.out), options.resume.as_deref());
         return earlier.finish(follow_one(options, given, &interrupt, None)?);
     }
     let there = options.ensemble.there(&options.out)?;

@@ -116,7 +116,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     words::print(&joint, sheared.as_ref());
     match directory {
         Some(directory) => {
-            let earlier = Earlier::of(&earlier::SLIP, directory, options.history.as_deref());
+            let earlier = Earlier::of(&earlier::SLIP, Some(directory), options.history.as_deref());
             earlier.finish(write(&joint, sheared.as_ref(), directory)?)
         }
         None => Ok(()),
