@@ -124,7 +124,9 @@ impl AdhesiveBuilder<'_> {
         Error::require("range of adhesion", law.range(), law.range() <= longest, expected)?;
         let targets = Targets::of(&self.targets, &grid)?;
         let body = Body::new(Arc::new(problem), law, memory);
-        targets.check_ahead((&grid, &body.apart()), Direction::Loading, law.work() > 0.0)?;
+        let apart = body.apart();
+        let length = body.greatest_length(apart.approach);
+        targets.check_ahead((&grid, &apart, length), Direction::Loading, law.work() > 0.0)?;
         let plain = (law.work() == 0.0).then(|| self.plain(&targets, memory.left())).transpose()?;
         let window_size = self.window_size.map(|size| size.min(grid.nodes()));
         Ok(AdhesivePath::new((body, self.law), targets, (window_size, plain)))

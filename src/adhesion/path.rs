@@ -12,7 +12,7 @@ use super::law::{Adhesion, CohesiveLaw};
 use super::moment::{Moment, Totals};
 use super::plain::Plain;
 use super::state::{AdhesiveEvent, AdhesiveState, Direction, NodeState};
-use super::target::Targets;
+use super::target::{Targets, force_unit};
 use super::trace::Trace;
 use super::window::{self, Played, ROUNDING};
 use crate::contact::{ContactState, ContactTarget};
@@ -182,7 +182,8 @@ impl AdhesivePath {
             return Err(Error::CannotContinue { steps: self.last.map_or(0, |state| state.step) });
         }
         let present = self.last.map_or_else(|| self.body.apart(), |state| state.contact);
-        targets.check_ahead((&self.grid(), &present), direction, self.plain.is_none())?;
+        let length = self.body.greatest_length(present.approach);
+        targets.check_ahead((&self.grid(), &present, length), direction, self.plain.is_none())?;
         self.go_back().inspect_err(|_| self.end = Some(AdhesiveEnd::Failed))?;
         if let Some(plain) = &mut self.plain {
             plain.turn(direction, targets.all());
@@ -429,7 +430,8 @@ impl AdhesivePath {
         if event == AdhesiveEvent::Limit {
             let pull = area * self.body.law.stress() * (soft_nodes + cohesive_nodes) as f64;
             let length = self.body.greatest_length(approach);
-            self.targets.place(&mut state.contact, [pull + load.abs(), length]);
+            let force = force_unit(pull, load, stiffness, length);
+            self.targets.place(&mut state.contact, [force, length]);
         }
         self.queue.push_back(state);
     }

@@ -158,7 +158,9 @@ impl Plain {
         let ContactState { approach, load, mean_gap, energy, .. } = state;
         let since = nodes.checked_sub(1).map(|last| self.touches[last].contact);
         ContactState {
-            contact_stiffness: since.map_or(Some(0.0), |since| since.contact_stiffness),
+            // A periodic half-space has none, with nodes or without.
+            contact_stiffness: since
+                .map_or(state.contact_stiffness.map(|_| 0.0), |since| since.contact_stiffness),
             interfacial_stiffness: since.map_or(Some(0.0), |since| since.interfacial_stiffness),
             energy,
             ..ContactState::new(&self.path.grid(), nodes, approach, load, mean_gap)

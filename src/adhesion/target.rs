@@ -39,6 +39,15 @@ const LEAST_RATE: f64 = 1e-11;
 /// that the window just did not reach.
 const NEAR: f64 = 1e-12;
 
+/// A state that was found at a target is off by less than this part of its unit.
+const AT_TARGET: f64 = 10.0 * NEAR;
+
+/// What loads are differences of: forces, and what rounding of the greatest length moves at a stiffness. On stiff bodies
+/// that sticks out of small loads.
+pub(super) fn force_unit(pull: f64, load: f64, stiffness: f64, length: f64) -> f64 {
+    pull + load.abs() + stiffness.abs() * length
+}
+
 impl Targets {
     /// # Errors
     ///
@@ -92,15 +101,17 @@ impl Targets {
         nearest.into_iter().flatten().map(|(_, target)| target)
     }
 
-    /// `Ok` if all lie ahead of a state, or at it but for rounding. From where the surfaces are apart a load that pulls
-    /// does, if they stick.
+    /// `Ok` if all lie ahead of a state, or at it but for rounding of the greatest length. From where the surfaces are
+    /// apart a load that pulls does, if they stick.
     pub(super) fn check_ahead(
         &self,
-        (grid, state): (&Grid, &ContactState),
+        (grid, state, length): (&Grid, &ContactState, f64),
         direction: Direction,
         sticks: bool,
     ) -> Result<(), Error> {
         let sign = direction.sign();
+        let stiffness = state.contact_stiffness.or(state.interfacial_stiffness);
+        let stiffness = stiffness.filter(|stiffness| stiffness.is_finite()).unwrap_or(0.0);
         for target in &self.targets {
             let (quantity, value, present, sign) = match *target {
                 ContactTarget::Load(load) => ("load", load, state.load, sign),
@@ -120,7 +131,11 @@ impl Targets {
             };
             let is_apart = state.contact_nodes == 0 && state.load == 0.0;
             let pulls = sticks && is_apart && direction == Direction::Loading;
-            let rounding = NEAR * value.abs().max(present.abs());
+            let unit = match *target {
+                ContactTarget::Load(_) => force_unit(value.abs(), present, stiffness, length),
+                _ => value.abs().max(present.abs()),
+            };
+            let rounding = AT_TARGET * unit;
             if sign * way < -rounding && !(quantity == "load" && pulls) {
                 return Err(AdhesionError::Behind { quantity, value, present }.into());
             }
@@ -139,8 +154,10 @@ impl Targets {
         let times = self.targets.iter().map(|target| {
             let (left, near, rate, unit) = match *target {
                 // Surfaces that are drawn together bear none when some nodes press as much as others pull.
-                ContactTarget::Load(0.0)
-                    if contact_nodes == 0 && direction == Direction::Loading =>
+                ContactTarget::Load(to)
+                    if (0.0..=NEAR * force).contains(&to)
+                        && contact_nodes == 0
+                        && direction == Direction::Loading =>
                 {
                     return f64::INFINITY;
                 }
@@ -214,7 +231,7 @@ impl Targets {
 
     /// Gives a state at a target the very value that was asked for; the units are those of [`Measured`].
     pub(super) fn place(&self, state: &mut ContactState, [force, length]: [f64; 2]) {
-        let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= NEAR * unit;
+        let is_near = |a: f64, b: f64, unit: f64| (a - b).abs() <= AT_TARGET * unit;
         for target in &self.targets {
             match *target {
                 ContactTarget::Load(load) if is_near(load, state.load, force) => {

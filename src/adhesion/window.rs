@@ -6,7 +6,7 @@ use super::law::CohesiveLaw;
 use super::moment::{Moment, Totals};
 use super::rows::Rows;
 use super::state::{AdhesiveEvent, Direction, NodeState};
-use super::target::{Measured, Targets};
+use super::target::{Measured, Targets, force_unit};
 use crate::contact::ContactState;
 use crate::error::AdhesionError;
 use crate::kernel::Gauge;
@@ -571,7 +571,7 @@ impl<'a> Play<'a> {
             load,
             mean_gap: [gaps, gap_rate].map(|sum| sum / self.grid.nodes() as f64),
             stiffness: self.area() * self.board.law().slope(),
-            units: [pull + load[0].abs(), self.length],
+            units: [force_unit(pull, load[0], load[1], self.length), self.length],
             contact_nodes: self.board.contact_nodes,
             is_full: self.board.contact_nodes == self.grid.nodes(),
         };

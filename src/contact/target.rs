@@ -27,6 +27,9 @@ pub enum ContactTarget {
     /// The solver for one load finds it as exactly as the gaps of its solutions are: to its tolerance times the
     /// approach, or times C(0, 0) p̄ on a body whose mean displacement is
     /// [arbitrary](crate::kernel::MeanDisplacement::Arbitrary), if that is more; but to no less than 10⁻¹⁴ of the mean
-    /// gap without load, which is rounding.
+    /// gap without load, which is rounding. Where contact shrinks again
+    /// ([`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown)) the mean gap may grow again with the load: near the
+    /// least one, and below it, the solver ends in [`Error::NoConvergence`](crate::Error::NoConvergence); a path finds
+    /// what there is.
     MeanGap(f64),
 }

@@ -10,6 +10,7 @@ use asperity::{
     PeriodicBoussinesq,
 };
 use asperity_testing::assert_relative;
+use asperity_testing::surfaces::scattered;
 use nalgebra::DMatrix;
 
 fn surface() -> SelfAffine {
@@ -105,6 +106,61 @@ fn targets_at_the_values_of_events_are_met() {
         }
     }
     assert!(met > 1000 && jumps > 30, "{met} {jumps}");
+}
+
+/// Small loads on stiff bodies that stick a little: what rounding of the height of the surface moves at the stiffness of
+/// the contact is 10⁻⁸ to 10⁻¹² of them. They are met all the same, once and again.
+#[test]
+fn small_loads_on_stiff_bodies_are_met() {
+    let grid = Grid::square(16, 16.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    for (work, load) in [(1e-9, 1e-9), (1e-7, 2e-8), (1e-8, 1e-10)] {
+        for seed in 0..12 {
+            let heights = scattered(grid.shape(), 100_003, seed) * 3.5e-6;
+            let surface = HeightMap::new(heights).unwrap();
+            let target = ContactTarget::Load(load);
+            let path = AdhesivePath::builder(&surface, &kernel, Adhesion::work(work)).until(target);
+            let mut path = path.build().unwrap();
+            let last = *run(&mut path).last().unwrap();
+            assert_eq!(last.contact.load, load, "{work} {seed}");
+            path.load_to(target).unwrap();
+            let again = *run(&mut path).last().unwrap();
+            assert_eq!((path.end(), again.contact.load), (Some(AdhesiveEnd::Target), load));
+            assert_eq!(again.contact.contact_nodes, last.contact.contact_nodes, "{work} {seed}");
+        }
+    }
+}
+
+/// Nodes that touch carry a load that is as good as none, however little more that is than none.
+#[test]
+fn the_least_load_is_met_in_contact() {
+    let surface = surface();
+    for kernel in kernels() {
+        let least = |load| {
+            let path = builder(&surface, &*kernel, 4e-3).until(ContactTarget::Load(load));
+            *run(&mut path.build().unwrap()).last().unwrap()
+        };
+        let (none, some) = (least(0.0), least(1e-22));
+        assert!(none.contact.contact_nodes > 0);
+        assert_eq!(some.contact.contact_nodes, none.contact.contact_nodes);
+    }
+}
+
+/// A periodic half-space has no stiffness about a distant point, without a node in contact either.
+#[test]
+fn without_adhesion_a_periodic_half_space_has_no_contact_stiffness() {
+    let surface = surface();
+    let [free, periodic] = kernels();
+    for (kernel, has_stiffness) in [(free, true), (periodic, false)] {
+        let target = ContactTarget::AreaFraction(0.1);
+        let mut path = builder(&surface, &*kernel, 0.0).until(target).build().unwrap();
+        let mut states = run(&mut path);
+        path.unload().unwrap();
+        states.extend(run(&mut path));
+        assert!(states.last().unwrap().contact.contact_nodes == 0);
+        let all = states.iter().all(|s| s.contact.contact_stiffness.is_some() == has_stiffness);
+        assert!(all, "{states:?}");
+    }
 }
 
 /// Without adhesion there and back, and a record is made of every one.
