@@ -123,6 +123,17 @@ pub enum Error {
         step: usize,
     },
 
+    /// A number of a state on record is missing or infinite.
+    #[error("the record is damaged: at step {step} the {quantity} is {value}")]
+    RecordNotFinite {
+        /// Number of events up to the state.
+        step: usize,
+        /// The quantity.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+
     /// A number of a state does not follow from the states before, so that it was changed afterwards.
     #[error("at step {step} the {quantity} is {value:e}, but {expected:e} {reason}")]
     Inconsistent {
@@ -190,6 +201,15 @@ pub enum Error {
         expected: f64,
         /// That of the kernel given \[m/Pa\].
         found: f64,
+    },
+
+    /// A record with other surroundings of the grid than its kernel has.
+    #[error("the record says that its boundary is {found}, but that of its kernel is {expected}")]
+    WrongBoundary {
+        /// The name of that of the kernel.
+        expected: String,
+        /// That on record.
+        found: String,
     },
 
     /// A path that ended with an error cannot go on.

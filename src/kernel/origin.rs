@@ -49,6 +49,20 @@ pub enum KernelOrigin {
 }
 
 impl KernelOrigin {
+    /// The surroundings of the grid that the kernel has: `None` of one that is not of this crate.
+    #[must_use]
+    pub fn boundary(&self) -> Option<Boundary> {
+        match *self {
+            Self::Boussinesq { .. } | Self::Layered { .. } => Some(Boundary::Free),
+            Self::PeriodicBoussinesq { .. }
+            | Self::Spectral { .. }
+            | Self::PeriodicLayered { .. }
+            | Self::SpectralLayered { .. } => Some(Boundary::Periodic),
+            Self::SemiPeriodicBoussinesq { boundary, .. } => Some(boundary),
+            Self::Other => None,
+        }
+    }
+
     /// E\* \[Pa\]: `None` of layers, which have none, and of kernels that are not of this crate.
     #[must_use]
     pub fn composite_modulus(&self) -> Option<f64> {

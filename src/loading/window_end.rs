@@ -176,15 +176,19 @@ impl LoadingPath {
             let mut at_front = run.scalars;
             at_front.advance(run.scalars.own_approach(&front.contact));
             let own = at_front.state(run.contact_nodes());
-            let is_behind = run.scalars.approach() >= at_front.approach() * (1.0 - RECOGNISED);
+            let known = &front.contact;
+            // Of lengths on a flat periodic surface nothing is left but rounding of what pressures displace.
+            let pressed = run.problem.grid().cell_area() * known.contact_nodes as f64;
+            let displaced = run.problem.table().self_influence() * known.load / pressed;
+            let length = at_front.approach().abs().max(displaced);
+            let is_behind = run.scalars.approach() >= at_front.approach() - RECOGNISED * length;
             let stiffness = |state: &ContactState| {
                 state.contact_stiffness.or(state.interfacial_stiffness).unwrap_or_default()
             };
-            let known = &front.contact;
             // Of a periodic body that has yielded everywhere nothing elastic is left but a difference of works.
-            let work = known.load * (known.approach.abs() + known.mean_gap.abs());
+            let work = known.load * (known.approach.abs() + known.mean_gap.abs() + displaced);
             let pairs = [
-                ("approach", own.approach, known.approach, 0.0),
+                ("approach", own.approach, known.approach, displaced),
                 ("load", own.load, known.load, 0.0),
                 ("energy", own.energy, known.energy, work),
                 ("stiffness", stiffness(&own), stiffness(known), 0.0),

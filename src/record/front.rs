@@ -32,7 +32,7 @@ pub(super) fn check(grid: &Grid, states: &[LoadingState], next: &NextWindow) -> 
     let expected = grid.cell_area() * stiffness;
     if let Some(value) = last.contact.contact_stiffness {
         let tolerance = stiffness_off * expected.abs();
-        Found { quantity: CONTACT, value, expected, tolerance, reason }.at(last)?;
+        Found { quantity: CONTACT, value, expected, tolerance, reason }.at(last.step)?;
     }
     let Some(value) = last.contact.interfacial_stiffness else {
         return Ok(());
@@ -41,7 +41,7 @@ pub(super) fn check(grid: &Grid, states: &[LoadingState], next: &NextWindow) -> 
         return Ok(());
     }
     let expected = expected / closing;
-    Found { quantity: INTERFACIAL, value, expected, tolerance: 0.0, reason }.at(last)
+    Found { quantity: INTERFACIAL, value, expected, tolerance: 0.0, reason }.at(last.step)
 }
 
 /// Stiffness and closing rate of the scalars of a path.

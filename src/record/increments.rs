@@ -35,12 +35,12 @@ pub(super) struct Found {
 }
 
 impl Found {
-    pub(super) fn at(self, state: &LoadingState) -> Result<(), Error> {
+    pub(super) fn at(self, step: usize) -> Result<(), Error> {
         let Self { quantity, value, expected, tolerance, reason } = self;
         if (value - expected).abs() <= tolerance {
             return Ok(());
         }
-        Err(inconsistent(state, quantity, [value, expected], reason))
+        Err(inconsistent(step, quantity, [value, expected], reason))
     }
 }
 
@@ -67,7 +67,7 @@ pub(super) fn check(
         tolerance: ROUNDING * mean_gap.abs(),
         reason: "is what first touch has",
     }
-    .at(first)?;
+    .at(first.step)?;
     first_touch(first, mean_gap)?;
     // On a flat surface nothing is left of lengths but the rounding of displacements: of what the load displaces on
     // average, or those of strains below 1.
@@ -80,12 +80,12 @@ pub(super) fn check(
     let displaced = roundings * f64::EPSILON * displaced / ROUNDING;
     let length = mean_gap.abs() + last.contact.approach.abs() + displaced;
     for state in states {
-        areas(grid, state)?;
+        areas(grid, state.step, &state.contact)?;
         let most = GREATEST_ERROR * length;
         if !(0.0..=most).contains(&state.approach_error) {
             let quantity = "estimated error of the approach";
             let reason = "is the most, a tenth of approach and mean gap";
-            return Err(inconsistent(state, quantity, [state.approach_error, most], reason));
+            return Err(inconsistent(state.step, quantity, [state.approach_error, most], reason));
         }
     }
     stiffnesses.check(None, first)?;
@@ -106,15 +106,15 @@ fn first_touch(state: &LoadingState, mean_gap: f64) -> Result<(), Error> {
     let ContactState { approach, load, energy, .. } = state.contact;
     let reason = "is what first touch has";
     for (quantity, value) in [("approach", approach), ("load", load), ("energy", energy)] {
-        Found { quantity, value, expected: 0.0, tolerance: 0.0, reason }.at(state)?;
+        Found { quantity, value, expected: 0.0, tolerance: 0.0, reason }.at(state.step)?;
     }
     let value = state.contact.mean_gap;
     let tolerance = ROUNDING * mean_gap.abs();
-    Found { quantity: "mean gap", value, expected: mean_gap, tolerance, reason }.at(state)
+    Found { quantity: "mean gap", value, expected: mean_gap, tolerance, reason }.at(state.step)
 }
 
-fn areas(grid: &Grid, state: &LoadingState) -> Result<(), Error> {
-    let contact = &state.contact;
+/// Areas follow from the number of nodes in contact.
+pub(super) fn areas(grid: &Grid, step: usize, contact: &ContactState) -> Result<(), Error> {
     let nodes = contact.contact_nodes as f64;
     let fraction = nodes / grid.nodes() as f64;
     let area = nodes * grid.cell_area();
@@ -124,7 +124,7 @@ fn areas(grid: &Grid, state: &LoadingState) -> Result<(), Error> {
     ] {
         let reason = "follows from the number of nodes in contact";
         let tolerance = FEW_ROUNDINGS * expected;
-        Found { quantity, value, expected, tolerance, reason }.at(state)?;
+        Found { quantity, value, expected, tolerance, reason }.at(step)?;
     }
     Ok(())
 }
@@ -160,7 +160,7 @@ fn increments(before: &LoadingState, state: &LoadingState, length: f64) -> Resul
         ("plastic volume", plastic.volume, before.volume, off * area),
         ("plastic work", plastic.work, before.work, work_off),
     ] {
-        Found { quantity, value, expected, tolerance, reason }.at(state)?;
+        Found { quantity, value, expected, tolerance, reason }.at(state.step)?;
     }
     Ok(())
 }
@@ -182,7 +182,7 @@ fn plastic(state: &LoadingState, hardness: &DMatrix<f64>, length: f64) -> Result
         if !is_one {
             let expected = if value < low { low } else { high };
             let reason = "is what its volume and the hardness allow";
-            return Err(inconsistent(state, quantity, [value, expected], reason));
+            return Err(inconsistent(state.step, quantity, [value, expected], reason));
         }
     }
     Ok(())

@@ -42,6 +42,18 @@ impl KernelRecord {
         }
     }
 
+    /// `Ok` if the surroundings of the grid are those that the parameters say.
+    pub(super) fn check_boundary(&self) -> Result<(), Error> {
+        match self.origin.boundary() {
+            Some(expected) if expected != self.boundary => {
+                let [expected, found] =
+                    [expected, self.boundary].map(|boundary| format!("{boundary:?}"));
+                Err(Error::WrongBoundary { expected, found })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// `Ok` if the coefficients are those of a kernel, but for a uniform displacement where that is arbitrary.
     pub(super) fn check(&self, table: &KernelTable) -> Result<(), Error> {
         let found = Self::of(table).coefficients;

@@ -47,7 +47,7 @@ pub use kernel::KernelRecord;
 use nalgebra::DMatrix;
 
 use crate::contact::ContactSequence;
-use crate::kernel::{InfluenceKernel, KernelTable};
+use crate::kernel::{InfluenceKernel, KernelOrigin, KernelTable};
 use crate::loading::{
     ContactRule, History, LoadingBuilder, LoadingEnd, LoadingState, Replayed, replay,
 };
@@ -177,10 +177,19 @@ impl LoadingRecord {
         end: Option<LoadingEnd>,
     ) -> Result<Self, Error> {
         grid.check_shape(heights.shape())?;
+        kernel.check_boundary()?;
         replay(&grid, &history, |_, _, _| {})?;
         for state in history.states() {
-            if !state.contact.is_finite() || state.approach_error.is_nan() {
-                return Err(Error::NotFinite { step: state.step });
+            let step = state.step;
+            let not_finite = |(quantity, value)| Error::RecordNotFinite { step, quantity, value };
+            state.contact.not_finite().map_or(Ok(()), |found| Err(not_finite(found)))?;
+            if state.approach_error.is_nan() {
+                return Err(not_finite(("estimated error of the approach", f64::NAN)));
+            }
+            // All kernels of this crate have one.
+            if state.contact.interfacial_stiffness.is_none() && kernel.origin != KernelOrigin::Other
+            {
+                return Err(not_finite(("interfacial stiffness", f64::NAN)));
             }
         }
         let layering = kernel.origin.layering(kernel.boundary);
@@ -367,10 +376,10 @@ impl LoadingRecord {
 
 /// The error of a state whose quantity has a value in place of another one.
 fn inconsistent(
-    state: &LoadingState,
+    step: usize,
     quantity: &'static str,
     [value, expected]: [f64; 2],
     reason: &'static str,
 ) -> Error {
-    Error::Inconsistent { step: state.step, quantity, value, expected, reason }
+    Error::Inconsistent { step, quantity, value, expected, reason }
 }

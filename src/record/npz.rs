@@ -322,15 +322,16 @@ impl LoadingRecord {
         let ((nx, ny), (dx, dy)) = (parameters.shape, parameters.cell);
         let grid = Grid::new(nx, ny, dx, dy)?;
         let heights = HeightMap::new(archive.matrix("heights")?)?;
-        let steps = archive.vector("step", None)?;
-        let length = Some(steps.len());
-        let wholes = |name: &str| {
+        let wholes_of = |name: &str, length: Option<usize>| {
             let values = archive.vector(name, length)?;
             match values.iter().find(|value| whole(**value) as f64 != **value) {
                 Some(value) => Err(bad(format!("member '{name}': {value} is no whole number"))),
                 None => Ok(values),
             }
         };
+        let steps = wholes_of("step", None)?;
+        let length = Some(steps.len());
+        let wholes = |name: &str| wholes_of(name, length);
         let (ix, iy, nodes) = (wholes("ix")?, wholes("iy")?, wholes("contact_nodes")?);
         let events = wholes("event")?;
         let mut states = Vec::with_capacity(steps.len());

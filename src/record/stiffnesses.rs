@@ -99,7 +99,7 @@ impl HalfSpace {
             Mean::Gauge(_) => "dW/dδ that follows from the interfacial stiffness",
         };
         let wrong =
-            |expected, reason| Err(inconsistent(state, quantity, [value, expected], reason));
+            |expected, reason| Err(inconsistent(state.step, quantity, [value, expected], reason));
         let (least, most) = match state.event {
             ContactEvent::Touch => (earlier, earlier + self.step),
             ContactEvent::Limit => (earlier, earlier),
@@ -138,7 +138,7 @@ impl HalfSpace {
         }
         let expected = 1.0 / if compliance < low { low } else { high };
         let reason = "is what dW/dδ and the displacement of the mean surface allow";
-        Err(inconsistent(state, INTERFACIAL, [value, expected], reason))
+        Err(inconsistent(state.step, INTERFACIAL, [value, expected], reason))
     }
 }
 
@@ -179,7 +179,7 @@ impl Stiffnesses {
             if before.is_some() && earlier.is_some() != value.is_some() {
                 let [value, expected] = [value, earlier].map(|value| value.unwrap_or(f64::NAN));
                 let reason = "is what the state before has, of a body that has one or none";
-                return Err(inconsistent(state, quantity, [value, expected], reason));
+                return Err(inconsistent(state.step, quantity, [value, expected], reason));
             }
             let Some(value) = value else { continue };
             // Under a layer gaps may open as the load grows.
@@ -190,8 +190,9 @@ impl Stiffnesses {
             } else {
                 value > 0.0
             };
-            let wrong =
-                |expected, reason| Err(inconsistent(state, quantity, [value, expected], reason));
+            let wrong = |expected, reason| {
+                Err(inconsistent(state.step, quantity, [value, expected], reason))
+            };
             if !is_one && (value == 0.0 || !may_fall_below) {
                 return wrong(0.0, "is what a plateau has, and no other state");
             }

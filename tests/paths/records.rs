@@ -2,13 +2,14 @@
 
 use crate::problems::{grid, kernels, rough};
 use asperity::loading::{ContactEvent, History};
-use asperity::record::LoadingRecord;
-use asperity::surface::Topography;
+use asperity::record::{KernelRecord, LoadingRecord};
+use asperity::surface::{HeightMap, Topography};
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
-    Boussinesq, ContactRule, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel,
-    LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral,
+    Boundary, Boussinesq, ContactRule, ContactTarget, Error, FixedLoadSolver, Grid,
+    InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral,
 };
+use asperity_testing::assert_relative;
 use asperity_testing::close::assert_close;
 use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
@@ -388,7 +389,55 @@ fn states_in_no_order_of_a_path_are_refused() {
     let counted = ("number of nodes in contact", 7.0, "that of the events");
     assert_eq!(not_on_path(count, counted), 21);
     let nan = changed(&|state| state.contact.load = f64::NAN);
-    assert!(matches!(nan, Err(Error::NotFinite { step: 21 })));
+    assert!(matches!(nan, Err(Error::RecordNotFinite { step: 21, quantity: "load", .. })));
+    // A kernel of this crate always has a stiffness, without which loads and gaps could be any.
+    let soft = changed(&|state| state.contact.interfacial_stiffness = None);
+    let quantity = "interfacial stiffness";
+    assert!(
+        matches!(soft, Err(Error::RecordNotFinite { step: 21, quantity: q, .. }) if q == quantity)
+    );
+}
+
+/// Stress and patches go by the boundary on record, without the kernel.
+#[test]
+fn a_boundary_that_is_not_that_of_the_kernel_is_refused() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let path = LoadingSolver::new(&rough(&grid(), 5), &kernel).unwrap();
+    let record = LoadingRecord::new(&path, History::default()).unwrap();
+    for boundary in [Boundary::Periodic, Boundary::PeriodicX, Boundary::PeriodicY] {
+        let other = KernelRecord { boundary, ..record.kernel().clone() };
+        let (heights, settings) = (record.heights().clone(), record.settings().clone());
+        let history = History::default();
+        let refused = LoadingRecord::from_parts(grid(), heights, other, settings, history, None);
+        assert!(matches!(refused, Err(Error::WrongBoundary { .. })), "{refused:?}");
+    }
+}
+
+/// All lengths of a flat periodic surface are rounding: a path on it goes on from wherever it was stopped.
+#[test]
+fn flat_periodic_surfaces_with_a_hardness_go_on_from_any_event() {
+    let grid = Grid::square(6, 8e-4).unwrap();
+    let flat = HeightMap::new(DMatrix::zeros(6, 6)).unwrap();
+    let kernels: [Box<dyn InfluenceKernel>; 2] = [
+        Box::new(PeriodicBoussinesq::new(grid, 1e9).unwrap()),
+        Box::new(Spectral::new(grid, 1e9).unwrap()),
+    ];
+    for kernel in kernels {
+        let path = || LoadingSolver::builder(&flat, &*kernel).hardness(6e8).build().unwrap();
+        let whole = path().run().unwrap();
+        let events = whole.states().len();
+        for stopped in 1..events {
+            let mut path = path();
+            let history = path.by_ref().take(stopped).collect::<Result<_, _>>().unwrap();
+            let record = LoadingRecord::new(&path, history).unwrap();
+            let mut resumed = record.resume().unwrap();
+            let rest = resumed.run().unwrap();
+            assert_eq!(stopped + rest.states().len(), events, "{stopped}");
+            let [found, last] =
+                [&rest, &whole].map(|path| path.states().last().unwrap().contact.load);
+            assert_relative!(found, last, 1e-10);
+        }
+    }
 }
 
 /// A record that ends at a limit goes on from there.

@@ -6,6 +6,7 @@ mod npz;
 use nalgebra::DMatrix;
 
 use super::KernelRecord;
+use super::increments::areas;
 use crate::adhesion::{
     Adhesion, AdhesiveBranch, AdhesiveBuilder, AdhesivePath, AdhesiveState, Direction, Trace,
 };
@@ -91,12 +92,14 @@ impl AdhesiveRecord {
     /// [`Error::NotFinite`], [`Error::Inconsistent`], and those of [`Trace::follow`].
     fn checked(self) -> Result<Self, Error> {
         self.grid.check_shape(self.heights.shape())?;
+        self.kernel.check_boundary()?;
         let states = self.states.states();
         if states.len() != self.trace.marks.len() {
             let (expected, found) = (self.trace.marks.len(), states.len());
             return Err(Error::LengthMismatch { expected, found });
         }
         self.trace.follow(self.grid.nodes(), |place, counts| {
+            areas(&self.grid, states[place].step, &states[place].contact)?;
             check(&states[place], self.trace.marks[place].1, counts)
         })?;
         Ok(self)
@@ -195,8 +198,11 @@ fn check(
 ) -> Result<(), Error> {
     let contact = &state.contact;
     let energies = [contact.energy, state.adhesive_energy, state.dissipated, state.work];
-    if !contact.is_finite() || energies.iter().any(|energy| !energy.is_finite()) {
-        return Err(Error::NotFinite { step: state.step });
+    let names = ["elastic energy", "energy of adhesion", "dissipated energy", "work"];
+    let mut of_energies = names.into_iter().zip(energies);
+    let not_finite = contact.not_finite().or(of_energies.find(|(_, energy)| !energy.is_finite()));
+    if let Some((quantity, value)) = not_finite {
+        return Err(Error::RecordNotFinite { step: state.step, quantity, value });
     }
     let wrong = |quantity, value, expected, reason| {
         Err(Error::Inconsistent { step: state.step, quantity, value, expected, reason })

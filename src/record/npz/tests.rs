@@ -112,7 +112,7 @@ fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::E
         (&newer, &as_it_is, "version 3 is newer than 2, which this program reads"),
         (&other, &as_it_is, "it holds 'lens prescription'"),
         ("{}", &as_it_is, "its parameters are not understood: missing field `format`"),
-        (&text, &three, "member 'load': it has 3 numbers, but there are 4 states"),
+        (&text, &three, "member 'load': it has 3 numbers, and 4 were expected"),
         (&text, &event, "no event is 4"),
     ];
     for (parameters, change, expected) in cases {

@@ -183,8 +183,8 @@ impl Archive {
     pub fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, Error> {
         self.member(name, |bytes| {
             let values = npy::vector(bytes)?;
-            let (found, states) = (values.len(), length.unwrap_or(values.len()));
-            ensure!(found == states, "it has {found} numbers, but there are {states} states");
+            let (found, expected) = (values.len(), length.unwrap_or(values.len()));
+            ensure!(found == expected, "it has {found} numbers, and {expected} were expected");
             Ok(values)
         })
     }
