@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions, TextLayout};
-use asperity::surface::{Topography, Trend, Warning};
+use asperity::surface::{HeightMap, Topography, Trend, Warning};
 use asperity::{Boundary, SurfaceError};
 use asperity_cli::note;
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{Failure, of_program};
 use clap::{Args, ValueEnum};
+use nalgebra::DMatrix;
 use serde_json::{Map, Value};
 
 use crate::values::{LENGTH, layout, unit};
@@ -140,6 +141,11 @@ impl Reading {
         if self.ignore_mask {
             options = options.ignore_mask();
         }
+        if let (Some(_), Some(unit)) = (self.side, self.lateral_unit) {
+            note!(
+                "note: --lateral-unit {unit} is not used, because --side gives the lengths, in metres unless it has a unit"
+            );
+        }
         options
             .read(file)
             .map_err(|error| Failure::new(format!("cannot read {}", file.display()), error))
@@ -156,18 +162,34 @@ impl Reading {
         for note in &measured.notes {
             note!("note: {}", of_program(note));
         }
-        if measured.missing > 0 && self.fill {
-            let missing = measured.missing;
+        measured.grid().map_err(failed)?;
+        let missing = measured.missing;
+        if missing > 0 && !self.fill {
+            return measured.topography().map_err(failed);
+        }
+        let (sx, sy) = measured.trend(Trend::Plane).map_err(failed)?.slopes();
+        note!("tilt       {sx:.2e} along x, {sy:.2e} along y");
+        if self.level.is_some() {
+            let before = measured_sq(&measured.heights).map_err(failed)?;
+            measured = self.levelled(measured).map_err(failed)?;
+            let now = measured_sq(&measured.heights).map_err(failed)?;
+            note!(
+                "levelled   Sq {} before, {} now",
+                quantity(before, "m", 5),
+                quantity(now, "m", 5)
+            );
+        }
+        if missing > 0 {
             measured = measured.fill_missing().map_err(failed)?;
             note!("filled     {}, interpolated from the nodes around", counted(missing, "node"));
             if let Some(warning) = Warning::of_filling(missing, measured.heights.len()) {
                 eprintln!("warning: {warning}");
             }
         }
-        let surface = measured.topography().map_err(failed)?;
-        let (sx, sy) = surface.trend(Trend::Plane).slopes();
-        note!("tilt       {sx:.2e} along x, {sy:.2e} along y");
-        self.prepare(surface).map_err(failed)
+        if self.invert {
+            note!("inverted   peaks are now valleys");
+        }
+        measured.topography().map(|surface| self.inverted(surface)).map_err(failed)
     }
 
     /// `Ok` unless a surface is one row of nodes that does not repeat across: a strip as narrow as a cell, which nobody
@@ -190,22 +212,25 @@ impl Reading {
         self.fill
     }
 
-    /// Levels and inverts as asked, and says so on stderr.
-    pub(crate) fn prepare(&self, surface: Topography) -> Result<Topography, SurfaceError> {
-        let mut surface = surface;
-        if let Some(level) = self.level {
-            let levelled = surface.level(level.into())?;
-            note!(
-                "levelled   Sq {} before, {} now",
-                quantity(surface.map().rms_height(), "m", 5),
-                quantity(levelled.map().rms_height(), "m", 5)
-            );
-            surface = levelled;
+    /// Without the trend that is not wanted: before holes are filled, which would be tipped with it.
+    pub(crate) fn levelled(
+        &self,
+        measured: MeasuredSurface,
+    ) -> Result<MeasuredSurface, SurfaceError> {
+        match self.level {
+            Some(level) => measured.level(level.into()),
+            None => Ok(measured),
         }
-        if self.invert {
-            note!("inverted   peaks are now valleys");
-            surface = surface.invert();
-        }
-        Ok(surface)
     }
+
+    /// Turned upside down if that was asked for.
+    pub(crate) fn inverted(&self, surface: Topography) -> Topography {
+        if self.invert { surface.invert() } else { surface }
+    }
+}
+
+/// Rms height of the nodes that were measured \[m\].
+fn measured_sq(heights: &DMatrix<f64>) -> Result<f64, SurfaceError> {
+    let measured: Vec<f64> = heights.iter().copied().filter(|z| z.is_finite()).collect();
+    Ok(HeightMap::new(DMatrix::from_vec(measured.len(), 1, measured))?.rms_height())
 }

@@ -361,6 +361,45 @@ fn info_prepares_the_surface_as_it_is_told() -> Done {
     Ok(())
 }
 
+/// A plane that is taken off takes nothing else with it, whichever nodes are missing: these are filled afterwards.
+#[test]
+fn holes_are_filled_behind_the_level() -> Done {
+    let folder = Scratch::new("level-then-fill")?;
+    let write = |name: &str, slope: f64| {
+        let height = |ix: usize, iy: usize| match ix < 3 || (ix + iy) % 11 == 5 {
+            true => f64::NAN,
+            false => ((7 * ix + 3 * iy * iy) % 13) as f64 + slope * ix as f64,
+        };
+        let rows = (0..16).map(|iy| {
+            let row: Vec<String> = (0..24).map(|ix| height(ix, iy).to_string()).collect();
+            row.join(";")
+        });
+        fs::write(folder.0.join(name), rows.collect::<Vec<_>>().join("\n"))
+    };
+    write("flat.csv", 0.0)?;
+    write("tilted.csv", 40.0)?;
+    let reading = "--height-unit um --side 1mm";
+    // Heights rise to 920 µm by the tilt, and are rounded to 1e-16 of that; 1e-10 of the range is what filling leaves.
+    let close = |a: f64, b: f64| (a - b).abs() <= 1e-8 * b.abs();
+    let load = |name: &str| {
+        answer(
+            &folder.0,
+            &format!("load --surface {name} {reading} --fill --level plane --e-star 1e9 --load 1"),
+        )
+    };
+    let [flat, tilted] = [load("flat.csv")?, load("tilted.csv")?];
+    for name in ["approach", "mean_gap", "contact_area"] {
+        assert!(close(number(&tilted, name), number(&flat, name)), "{name}: {tilted} {flat}");
+    }
+    let info = |name: &str| answer(&folder.0, &format!("info {name} {reading}"));
+    let [flat, tilted] = [info("flat.csv")?, info("tilted.csv")?];
+    for name in ["ssk", "sku", "sdr", "sal", "sk", "spk", "svk"] {
+        let [found, expected] = [&tilted, &flat].map(|info| number(&info["texture"], name));
+        assert!(close(found, expected), "{name}: {found} {expected}");
+    }
+    Ok(())
+}
+
 #[test]
 fn patches_say_what_to_run_and_where_a_leak_passes() -> Done {
     let folder = Scratch::new("channels")?;

@@ -3,7 +3,7 @@
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
 use asperity::number::quantity;
 use asperity::surface::{Amplitude, Topography, Trend, Warning};
-use asperity::{Boundary, Grid, SelfAffine, SurfaceError};
+use asperity::{Boundary, Grid, SelfAffine};
 
 use crate::fault::{Fault, of_page};
 use crate::request::{Generation, Level, Reading};
@@ -49,6 +49,11 @@ impl Heights {
             room::check(&grid, Boundary::Free)?;
         }
         let mut warnings = Vec::new();
+        measured = match reading.level {
+            Level::None => measured,
+            Level::Plane => measured.level(Trend::Plane)?,
+            Level::Quadratic => measured.level(Trend::Quadratic)?,
+        };
         if missing > 0 && reading.fill {
             measured = measured.fill_missing()?;
             notes.push(format!("{missing} missing nodes are interpolated from the nodes around"));
@@ -58,7 +63,8 @@ impl Heights {
             Found::Part(measured)
         } else {
             let grid = measured.grid()?;
-            let surface = prepared(Topography::new(grid, measured.heights)?, reading)?;
+            let surface = Topography::new(grid, measured.heights)?;
+            let surface = if reading.invert { surface.invert() } else { surface };
             warnings.extend(Warning::of_surface(&surface));
             Found::Whole(surface)
         };
@@ -166,16 +172,6 @@ fn options(reading: &Reading) -> Result<ReadOptions, Fault> {
         options = options.ignore_mask();
     }
     Ok(options)
-}
-
-/// Levelled and inverted as asked.
-fn prepared(surface: Topography, reading: &Reading) -> Result<Topography, SurfaceError> {
-    let levelled = match reading.level {
-        Level::None => surface,
-        Level::Plane => surface.level(Trend::Plane)?,
-        Level::Quadratic => surface.level(Trend::Quadratic)?,
-    };
-    Ok(if reading.invert { levelled.invert() } else { levelled })
 }
 
 /// Its shortest wave has so many cells that the grid resolves it, unless another one is asked for.

@@ -198,7 +198,7 @@ fn print(
         say!("rms gradient  {}", significant(gradient.abs(), 4));
     }
     let failed = |error| Failure::new("cannot remove the tilt", error);
-    let levelled = whole.surface.level(Trend::Plane).map_err(failed)?;
+    let levelled = whole.filled_flat.level(Trend::Plane).map_err(failed)?;
     let tilt = map.rms_height().powi(2) - levelled.map().rms_height().powi(2);
     // What a difference of squares leaves of rounding is no tilt.
     let tilt = if tilt > 1e-12 * map.rms_height().powi(2) { tilt.sqrt() } else { 0.0 };
@@ -236,7 +236,7 @@ fn print(
 fn texture(whole: &Whole) -> Result<Option<ArealParameters>, Failure> {
     let (nx, ny) = whole.surface.grid().shape();
     let is_map = nx > 1 && ny > 1 && whole.has_size;
-    let found = is_map.then(|| whole.surface.areal_parameters()).transpose();
+    let found = is_map.then(|| whole.filled_flat.areal_parameters()).transpose();
     found.map_err(|error| Failure::new("cannot compute the texture of the map", error))
 }
 
@@ -275,8 +275,8 @@ fn profile(whole: &Whole, cutoff: Option<f64>) -> Result<Option<ProfileParameter
         };
     }
     let found = match ny {
-        1 => whole.surface.profile_parameters(cutoff),
-        _ => whole.surface.transpose().profile_parameters(cutoff),
+        1 => whole.filled_flat.profile_parameters(cutoff),
+        _ => whole.filled_flat.transpose().profile_parameters(cutoff),
     };
     found
         .map(Some)

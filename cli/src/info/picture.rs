@@ -40,7 +40,7 @@ pub(super) fn map(whole: &Whole, directory: &Path) -> Result<PathBuf, Failure> {
 /// The distribution of heights, and the power spectrum of the surface without its tilt; nothing of heights that are all the
 /// same.
 pub(super) fn statistics(whole: &Whole, directory: &Path) -> Result<Option<PathBuf>, Failure> {
-    let levelled = whole.surface.level(Trend::Plane).ok();
+    let levelled = whole.filled_flat.level(Trend::Plane).ok();
     let levelled = levelled.filter(|_| whole.has_size);
     let charts = [distribution(whole), levelled.as_ref().and_then(spectrum)];
     let charts: Vec<Chart> = charts.into_iter().flatten().collect();

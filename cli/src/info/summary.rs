@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::Grid;
 use asperity::io::MeasuredSurface;
-use asperity::surface::Topography;
+use asperity::surface::{Topography, Trend};
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
@@ -14,6 +14,8 @@ use crate::reading::Reading;
 pub(super) struct Whole {
     /// On cells of 1 m where the file does not give the size: heights have figures all the same.
     pub(super) surface: Topography,
+    /// The same for figures without the tilt: holes were filled without it, as they would be tipped with it.
+    pub(super) filled_flat: Topography,
     /// Whether the size is known.
     pub(super) has_size: bool,
     /// Heights for the picture, NaN at nodes that are missing and stay so.
@@ -27,16 +29,20 @@ impl Whole {
         reading: &Reading,
     ) -> Result<Self, Failure> {
         let failed = |error| Failure::new(format!("cannot use {}", file.display()), error);
-        let filled = measured.clone().fill_missing().map_err(failed)?;
-        let (nx, ny) = filled.heights.shape();
-        let has_size = filled.cell.is_some();
-        let grid = match has_size {
-            true => filled.grid(),
-            false => Grid::new(nx, ny, 1.0, 1.0),
+        let has_size = measured.cell.is_some();
+        let on_grid = |measured: MeasuredSurface| {
+            let (dx, dy) = measured.cell.unwrap_or((1.0, 1.0));
+            let filled = measured.fill_missing()?;
+            let (nx, ny) = filled.heights.shape();
+            let surface = Topography::new(Grid::new(nx, ny, dx, dy)?, filled.heights)?;
+            Ok(reading.inverted(surface))
         };
-        let surface = grid.and_then(|grid| Topography::new(grid, filled.heights));
-        let surface = surface.and_then(|surface| reading.prepare(surface));
-        let surface = surface.map_err(failed)?;
+        let levelled = reading.levelled(measured.clone()).map_err(failed)?;
+        let surface = on_grid(levelled.clone()).map_err(failed)?;
+        let filled_flat = match measured.missing {
+            0 => surface.clone(),
+            _ => levelled.level(Trend::Plane).and_then(on_grid).map_err(failed)?,
+        };
         let is_shown = |height, found: f64| match found.is_nan() && !reading.fills() {
             true => f64::NAN,
             false => height,
@@ -44,6 +50,7 @@ impl Whole {
         Ok(Self {
             shown: surface.heights().zip_map(&measured.heights, is_shown),
             surface,
+            filled_flat,
             has_size,
         })
     }

@@ -6,16 +6,17 @@ use nalgebra::DMatrix;
 
 use super::format::Format;
 use crate::number::{counted, quantity};
-use crate::surface::{Topography, Warning, fill_missing};
+use crate::surface::{FittedTrend, Topography, Trend, Warning, fill_missing, level_measured};
 use crate::{Error, FileError, Grid};
 
 /// Heights as they were measured: some may be missing, and the file may not know the size of the surface.
 ///
 /// ```no_run
 /// use asperity_surfaces::io::read_surface;
+/// use asperity_surfaces::surface::Trend;
 ///
 /// # fn main() -> Result<(), asperity_surfaces::Error> {
-/// let surface = read_surface("ground.sdf")?.fill_missing()?.topography()?;
+/// let surface = read_surface("ground.sdf")?.level(Trend::Plane)?.fill_missing()?.topography()?;
 /// # Ok(())
 /// # }
 /// ```
@@ -49,6 +50,32 @@ impl MeasuredSurface {
     /// Those of [`fill_missing`].
     pub fn fill_missing(self) -> Result<Self, Error> {
         Ok(Self { heights: fill_missing(self.heights)?, missing: 0, ..self })
+    }
+
+    /// The polynomial that is closest to the heights that were measured; on cells of 1 m if their size is not known.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`FittedTrend::of_measured`].
+    pub fn trend(&self, trend: Trend) -> Result<FittedTrend, Error> {
+        FittedTrend::of_measured(&self.any_grid()?, &self.heights, trend)
+    }
+
+    /// Takes that polynomial off; missing nodes stay missing, to be filled afterwards: see [`level_measured`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`level_measured`].
+    pub fn level(self, trend: Trend) -> Result<Self, Error> {
+        let heights = level_measured(&self.any_grid()?, &self.heights, trend)?;
+        Ok(Self { heights, ..self })
+    }
+
+    /// Its grid, with cells of 1 m if their size is not known.
+    fn any_grid(&self) -> Result<Grid, Error> {
+        let (nx, ny) = self.heights.shape();
+        let (dx, dy) = self.cell.unwrap_or((1.0, 1.0));
+        Grid::new(nx, ny, dx, dy)
     }
 
     /// The grid of the measurement.

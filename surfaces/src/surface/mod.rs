@@ -5,7 +5,7 @@
 //! * [`Paraboloid`], [`EllipticParaboloid`], [`Cylinder`], [`Cone`], [`FlatPunch`], [`Wave`],
 //!   [`BiWave`]: shapes whose contact has a closed-form solution.
 //! * [`Topography`]: heights with their lengths, which can be levelled, cropped, filtered, resampled
-//!   and described by statistics; [`fill_missing`] comes before it.
+//!   and described by statistics; [`level_measured`] and [`fill_missing`] come before it.
 //! * [`Sum`]: the composite roughness of two surfaces.
 //! * [`Warning`]: what looks wrong with a surface.
 //!
@@ -35,7 +35,9 @@ pub use statistics::{
     SelfAffineFit, SpectralBin, SpectralMoments,
 };
 pub use sum::Sum;
-pub use topography::{Filter, FittedTrend, Interpolation, Topography, Trend, Window};
+pub use topography::{
+    Filter, FittedTrend, Interpolation, Topography, Trend, Window, level_measured,
+};
 pub use warning::Warning;
 pub use waves::{BiWave, Wave};
 

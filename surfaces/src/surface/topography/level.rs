@@ -1,9 +1,11 @@
 //! What a measurement has of tilt and form, by least squares.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 use super::Topography;
-use crate::Error;
+use crate::surface::count_missing;
+use crate::surface::placement::all_finite;
+use crate::{Error, Grid};
 
 /// What is taken for the trend of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +27,7 @@ pub enum Trend {
 ///     \qquad X = x - x_0, \quad Y = y - y_0
 /// ```
 ///
-/// Made by [`Topography::trend`].
+/// Made by [`Topography::trend`], and where nodes are missing by [`FittedTrend::of_measured`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FittedTrend {
     center: (f64, f64),
@@ -60,6 +62,87 @@ impl FittedTrend {
         let tilted = self.height + self.slopes.0 * x + self.slopes.1 * y;
         tilted + 0.5 * xx * x * x + xy * x * y + 0.5 * yy * y * y
     }
+
+    /// The polynomial that is closest, in the sense of least squares, to the heights that were measured; the others are
+    /// NaN or infinite. Where none is missing it is [`Topography::trend`]. A slope needs measured nodes on two lines
+    /// across it, and a curvature on three: on fewer it is 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] between grid and heights, [`Error::NothingMeasured`] without a finite height.
+    pub fn of_measured(grid: &Grid, heights: &DMatrix<f64>, trend: Trend) -> Result<Self, Error> {
+        let missing = count_missing(heights);
+        if missing == 0 {
+            return Ok(Topography::new(*grid, heights.clone())?.trend(trend));
+        }
+        grid.check_shape(heights.shape())?;
+        let Some(span) = Span::of(heights) else {
+            let (nx, ny) = heights.shape();
+            return Err(Error::NothingMeasured { nx, ny });
+        };
+        let coefficients = span.fit(heights, trend);
+        let [height, sx, sy, xx, xy, yy] = coefficients;
+        let [(x, a), (y, b)] = [(span.x, grid.dx()), (span.y, grid.dy())]
+            .map(|(axis, cell)| (axis.center * cell, axis.half * cell));
+        let about_span = Self {
+            center: (x, y),
+            height,
+            slopes: (sx / a, sy / b),
+            curvatures: (2.0 * xx / a / a, xy / a / b, 2.0 * yy / b / b),
+        };
+        Ok(about_span.about(grid.center()))
+    }
+
+    /// The same polynomial about another point.
+    fn about(&self, center: (f64, f64)) -> Self {
+        let (x, y) = (center.0 - self.center.0, center.1 - self.center.1);
+        let (xx, xy, yy) = self.curvatures;
+        let slopes = (self.slopes.0 + xx * x + xy * y, self.slopes.1 + xy * x + yy * y);
+        Self { center, height: self.at(center.0, center.1), slopes, ..*self }
+    }
+
+    /// Heights less those of the polynomial; exactly 0 where no more is left than what rounds.
+    fn taken_off(&self, grid: &Grid, heights: &DMatrix<f64>) -> DMatrix<f64> {
+        let (nx, ny) = grid.shape();
+        let mut left = DMatrix::from_fn(nx, ny, |ix, iy| {
+            let (x, y) = grid.position(ix, iy);
+            heights[(ix, iy)] - self.at(x, y)
+        });
+        let greatest = |heights: &DMatrix<f64>| {
+            heights
+                .iter()
+                .filter(|z| !z.is_nan())
+                .fold(0.0_f64, |greatest, z| greatest.max(z.abs()))
+        };
+        if greatest(&left) <= ROUNDING * greatest(heights) {
+            left.apply(|z| {
+                if z.is_finite() {
+                    *z = 0.0
+                }
+            });
+        }
+        left
+    }
+}
+
+/// Heights without the trend of those that were measured; missing ones, NaN or infinite, become NaN. Take the trend off
+/// before [`fill_missing`](crate::surface::fill_missing): a gap that is filled first is tipped with the plane.
+///
+/// # Errors
+///
+/// Those of [`FittedTrend::of_measured`], and [`Error::HeightNotFinite`] if differences of heights overflow.
+pub fn level_measured(
+    grid: &Grid,
+    heights: &DMatrix<f64>,
+    trend: Trend,
+) -> Result<DMatrix<f64>, Error> {
+    let fitted = FittedTrend::of_measured(grid, heights, trend)?;
+    let only_measured =
+        |height: f64, found: f64, other| if found.is_finite() { height } else { other };
+    let measured = heights.map(|z| only_measured(z, z, f64::NAN));
+    let left = fitted.taken_off(grid, &measured);
+    let left = all_finite(left.zip_map(heights, |left, z| only_measured(left, z, 0.0)))?;
+    Ok(left.zip_map(heights, |left, z| only_measured(left, z, f64::NAN)))
 }
 
 impl Topography {
@@ -111,21 +194,106 @@ impl Topography {
     ///
     /// [`Error::HeightNotFinite`] if differences of heights overflow.
     pub fn level(&self, trend: Trend) -> Result<Self, Error> {
-        let (nx, ny) = self.grid.shape();
-        let fitted = self.trend(trend);
-        let mut left = DMatrix::from_fn(nx, ny, |ix, iy| {
-            let (x, y) = self.grid.position(ix, iy);
-            self.heights()[(ix, iy)] - fitted.at(x, y)
-        });
-        if left.amax() <= ROUNDING * self.heights().amax() {
-            left.fill(0.0);
-        }
-        self.with_heights(left)
+        self.with_heights(self.trend(trend).taken_off(&self.grid, self.heights()))
     }
 }
 
 /// What a trend and its subtraction may round, of the greatest height.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The nodes from the first to the last measured one along an axis.
+#[derive(Debug, Clone, Copy)]
+struct Axis {
+    /// In cells from the border of the map.
+    center: f64,
+    /// Half of the way between the two, in cells; 1 if they are the same.
+    half: f64,
+    lines: usize,
+}
+
+impl Axis {
+    fn of(first: usize, last: usize) -> Self {
+        let center = 0.5 * (first + last) as f64 + 0.5;
+        let half = if last > first { 0.5 * (last - first) as f64 } else { 1.0 };
+        Self { center, half, lines: last - first + 1 }
+    }
+
+    /// From −1 at the first node to 1 at the last.
+    fn place(&self, node: usize) -> f64 {
+        (node as f64 + 0.5 - self.center) / self.half
+    }
+}
+
+/// The rectangle of all measured nodes.
+struct Span {
+    x: Axis,
+    y: Axis,
+}
+
+impl Span {
+    /// `None` without any.
+    fn of(heights: &DMatrix<f64>) -> Option<Self> {
+        let nx = heights.nrows();
+        let measured = heights.iter().enumerate().filter(|(_, z)| z.is_finite());
+        let mut ends: Option<[usize; 4]> = None;
+        for (ix, iy) in measured.map(|(k, _)| (k % nx, k / nx)) {
+            let [left, right, low, high] = ends.unwrap_or([ix, ix, iy, iy]);
+            ends = Some([left.min(ix), right.max(ix), low.min(iy), high.max(iy)]);
+        }
+        ends.map(|[left, right, low, high]| Self {
+            x: Axis::of(left, right),
+            y: Axis::of(low, high),
+        })
+    }
+
+    /// Coefficients of 1, X, Y, X², XY and Y², each place between −1 and 1; 0 of those that the trend or the nodes do
+    /// not have.
+    fn fit(&self, heights: &DMatrix<f64>, trend: Trend) -> [f64; 6] {
+        let is_plane = trend != Trend::Mean;
+        let is_curved = trend == Trend::Quadratic;
+        let (across, along) = (self.x.lines, self.y.lines);
+        let takes_part = [
+            true,
+            is_plane && across > 1,
+            is_plane && along > 1,
+            is_curved && across > 2,
+            is_curved && across > 1 && along > 1,
+            is_curved && along > 2,
+        ];
+        let measured = || heights.iter().filter(|z| z.is_finite());
+        let unit = measured().fold(f64::MIN_POSITIVE, |unit, z| unit.max(z.abs()));
+        let count = measured().count() as f64;
+        let mean = measured().map(|z| z / unit).sum::<f64>() / count;
+        let mut normal = SMatrix::<f64, 6, 6>::zeros();
+        let mut right_side = SVector::<f64, 6>::zeros();
+        for (iy, column) in heights.column_iter().enumerate() {
+            let y = self.y.place(iy);
+            for (ix, z) in column.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+                let x = self.x.place(ix);
+                let mut terms = SVector::from([1.0, x, y, x * x, x * y, y * y]);
+                for (term, takes_part) in terms.iter_mut().zip(takes_part) {
+                    *term = if takes_part { *term } else { 0.0 };
+                }
+                normal += terms * terms.transpose() / count;
+                right_side += terms * ((z / unit - mean) / count);
+            }
+        }
+        // Directions in which the nodes do not differ, as on one slanting line, have no part in it.
+        let eigen = normal.symmetric_eigen();
+        let mut solution = SVector::<f64, 6>::zeros();
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value > SINGULAR * eigen.eigenvalues.amax() {
+                solution += vector * (vector.dot(&right_side) / value);
+            }
+        }
+        solution[0] += mean;
+        (solution * unit).into()
+    }
+}
+
+/// What is left of an eigenvalue that is 0, relative to the greatest; a map with a hole has some 1e-3, and a frame of one
+/// node around a hole more than 1e-6.
+const SINGULAR: f64 = 1e-12;
 
 /// The first three polynomials that are orthogonal on equidistant nodes, with cells of 1 and about
 /// their centre (Gram's).
@@ -233,6 +401,69 @@ mod tests {
         assert!((fitted.tilt().to_degrees() - 30.0).abs() < 1e-8);
         assert!((fitted.slopes().0 / slope - 0.6).abs() < 1e-10);
         assert_eq!(fitted.curvatures(), (0.0, 0.0, 0.0));
+        Ok(())
+    }
+
+    /// Half of the nodes missing, all of one side among them: what is known of the rest is exact, and what is left of
+    /// noise is orthogonal to the polynomials on the measured nodes.
+    #[test]
+    fn missing_nodes_have_no_part_in_a_trend() -> Result<(), Error> {
+        let (nx, ny) = (23, 18);
+        let grid = Grid::new(nx, ny, 1.5, 0.5)?;
+        let is_measured = |ix: usize, iy: usize| ix > 6 && noise(7 * ix + 31 * iy) > -0.3;
+        let holed = |height: &dyn Fn(f64, f64, usize) -> f64| {
+            DMatrix::from_fn(nx, ny, |ix, iy| {
+                let (x, y) = grid.position(ix, iy);
+                if is_measured(ix, iy) { height(x, y, ix + nx * iy) } else { f64::NAN }
+            })
+        };
+        let form =
+            |x: f64, y: f64| 4.0 + 0.5 * x - 0.2 * y + 0.03 * x * x - 0.1 * x * y - 0.2 * y * y;
+        let fitted =
+            FittedTrend::of_measured(&grid, &holed(&|x, y, _| form(x, y)), Trend::Quadratic)?;
+        for (x, y) in [(0.0, 0.0), (17.0, 4.0), (34.5, 9.0)] {
+            // Rounding of a system of condition 1e3, of heights up to 60.
+            assert!((fitted.at(x, y) - form(x, y)).abs() < 1e-11, "{x} {y}");
+        }
+        let (xx, xy, yy) = fitted.curvatures();
+        assert!((xx - 0.06).abs().max((xy + 0.1).abs()).max((yy + 0.4).abs()) < 1e-11);
+        let rough = holed(&|x, y, k| form(x, y) + noise(k));
+        let left = level_measured(&grid, &rough, Trend::Quadratic)?;
+        let again = FittedTrend::of_measured(&grid, &left, Trend::Quadratic)?;
+        assert!(again.at(0.0, 0.0).abs() < 1e-11 && again.tilt() < 1e-11);
+        assert!(rough.iter().zip(&left).all(|(found, left)| found.is_nan() == left.is_nan()));
+        // With no node missing it is the trend of the whole, bit for bit.
+        let whole = DMatrix::from_fn(nx, ny, |ix, iy| noise(ix + nx * iy));
+        for trend in [Trend::Mean, Trend::Plane, Trend::Quadratic] {
+            let levelled = Topography::new(grid, whole.clone())?.level(trend)?;
+            assert_eq!(&level_measured(&grid, &whole, trend)?, levelled.heights());
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn measured_nodes_on_few_lines_have_no_slope_across() -> Result<(), Error> {
+        let grid = Grid::square(5, 1.0)?;
+        let mut heights = DMatrix::from_element(5, 5, f64::NAN);
+        let refused = FittedTrend::of_measured(&grid, &heights, Trend::Plane);
+        assert!(matches!(refused, Err(Error::NothingMeasured { nx: 5, ny: 5 })));
+        heights[(1, 2)] = 7.0;
+        let one = FittedTrend::of_measured(&grid, &heights, Trend::Quadratic)?;
+        assert_eq!(
+            (one.height(), one.slopes(), one.curvatures()),
+            (7.0, (0.0, 0.0), (0.0, 0.0, 0.0))
+        );
+        heights[(4, 2)] = 10.0;
+        let two = FittedTrend::of_measured(&grid, &heights, Trend::Quadratic)?;
+        // 3 over three cells of 0.2; rounding.
+        assert!((two.slopes().0 - 5.0).abs() < 1e-13 && two.slopes().1 == 0.0);
+        assert_eq!(two.curvatures(), (0.0, 0.0, 0.0));
+        // The greatest numbers there are: their difference overflows, and is no missing height.
+        heights[(1, 2)] = -f64::MAX;
+        heights[(4, 2)] = f64::MAX;
+        heights[(2, 0)] = f64::MAX;
+        let refused = level_measured(&grid, &heights, Trend::Mean);
+        assert!(matches!(refused, Err(Error::HeightNotFinite { .. })), "{refused:?}");
         Ok(())
     }
 

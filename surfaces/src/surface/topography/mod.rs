@@ -9,6 +9,6 @@ mod window;
 
 pub use self::data::Topography;
 pub use self::filter::Filter;
-pub use self::level::{FittedTrend, Trend};
+pub use self::level::{FittedTrend, Trend, level_measured};
 pub use self::resample::Interpolation;
 pub use self::window::Window;
