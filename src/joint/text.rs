@@ -66,7 +66,7 @@ impl InterfaceTable {
     ///   last row.
     /// * *CalculiX*: the same; a `*FRICTION` whose stick slope is the stiffness of the last row; current goes by the
     ///   analogy with heat, as a `*GAP CONDUCTANCE`.
-    /// * *MOOSE*: a `PiecewiseLinear` function for each quantity.
+    /// * *MOOSE*: `PiecewiseLinear` functions: the pressure of the overclosure, each other quantity of the pressure.
     /// * *CSV*: all columns.
     #[must_use]
     pub fn text(&self, program: FeProgram) -> String {
