@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use super::bytes::printable;
 use crate::{Error, FileError};
 
 /// A defect of the file as a whole, `fault!("{nx} maps")`, or at a place in it, `fault!(at(12), "{nx} maps")`.
@@ -65,7 +66,7 @@ impl Fault {
         Error::File(match self {
             Self::Io(source) => FileError::Io { path, source },
             Self::Malformed { offset, reason } => {
-                FileError::BadFile { path, format, offset, reason }
+                FileError::BadFile { path, format, offset, reason: printable(&reason) }
             }
             Self::Refused(error) => return error,
         })

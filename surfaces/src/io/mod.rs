@@ -51,8 +51,9 @@
 //! # Text
 //!
 //! Numbers may be parted by blanks, tabs, `;` or commas, with decimal points or commas. Empty cells, `NaN`, `BAD`,
-//! `***` and the like are missing. The header that Gwyddion writes gives sides, units and name; without one, the
-//! options have to.
+//! `***` and the like are missing, and so are -9999 and other numbers that programs write for it, if they are far
+//! outside of all heights. The header that Gwyddion writes gives sides, units and name; without one, the options have
+//! to.
 //!
 //! A list has a point x, y, z in each row, in any order. The points have to lie on a regular grid, from which some may
 //! be absent: they are missing. A list is known by names of its columns, `x y z`, perhaps with units, `x (µm)`, by the

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use nalgebra::DMatrix;
 
-use super::bytes::{read_all, read_file};
+use super::bytes::{printable, read_all, read_file, shared};
 use super::format::{Besides, Format, not_read};
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
@@ -220,6 +220,7 @@ impl ReadOptions {
         replaced.extend(replacement("lengths along x and y", self.lateral_unit, unit));
         let cell = self.cell(&mut channel, path)?;
         let mut notes = channel.notes;
+        notes.extend(channel.note_of_side.filter(|_| self.side.is_some()));
         notes.append(&mut replaced);
         if let Some(mask) = channel.mask.filter(|_| !self.ignore_mask) {
             let nodes = channel.values.iter_mut().zip(&mask).filter(|(_, marked)| **marked);
@@ -260,7 +261,7 @@ impl ReadOptions {
         if let Some((first, value)) = infinite().next() {
             notes.push(format!(
                 "{} {value} at node ({}, {}), and taken as missing, as in files of several makers; a node that is never to touch \
-                 needs a finite height far below the others",
+                 needs a finite height far below the others, but none such as -9999, which stands for a missing one",
                 match infinite().count() {
                     1 => "1 height is infinite,".to_string(),
                     count => format!("{count} heights are infinite, the first"),
@@ -329,6 +330,17 @@ impl ReadOptions {
     }
 }
 
+/// Texts of the file without control characters, wherever they are shown: terminals obey them.
+fn made_printable(mut channel: Channel) -> Channel {
+    for text in [&mut channel.name, &mut channel.understood].into_iter().chain(&mut channel.notes) {
+        *text = printable(text);
+    }
+    for unit in [&mut channel.height_unit, &mut channel.lateral_unit].into_iter().flatten() {
+        *unit = printable(&shared(unit.trim()));
+    }
+    channel
+}
+
 /// Maps whose names occur more than once get numbers, so that each can be chosen.
 fn told_apart(mut channels: Vec<Channel>) -> Vec<Channel> {
     let names = names(&channels);
@@ -384,7 +396,7 @@ fn parse(
     })?;
     let channels = format.parse(bytes, &Besides { path, layout }).and_then(|channels| {
         ensure!(!channels.is_empty(), "there is no map in it");
-        Ok(told_apart(channels))
+        Ok(told_apart(channels.into_iter().map(made_printable).collect()))
     });
     Ok((format, channels.map_err(|fault| fault.in_file(path, format.name()))?))
 }
@@ -404,6 +416,40 @@ mod tests {
         assert_eq!(cell((1, 2000), &side)?, Some((1e-6, 1e-6)));
         assert_eq!(cell((2000, 1), &side)?, Some((1e-6, 1e-6)));
         assert_eq!(cell((1, 2000), &side.side_y(4e-3))?, Some((2e-3, 2e-6)));
+        Ok(())
+    }
+
+    /// Terminals obey control characters: those of a file are not passed on, neither by what is read nor by errors.
+    #[test]
+    fn no_control_characters_of_files_are_shown() -> Result<(), Error> {
+        let rows = "1.5 4.25 1 5\n2 6.5 2 8\n5 8 9.75 3\n1 2 9 4\n";
+        let head =
+            "# Channel: a\x1b[2Jb\n# Width: 1 m\n# Height: 1 m\n# by \x1b]0;c\x07 and \u{9b}3m\n";
+        // They are few among other letters, or the file is no text.
+        let head = format!("{head}# {}\n", " ".repeat(1000));
+        let text = format!("{head}# Value units: m\n{rows}");
+        let read = ReadOptions::new().read_bytes(&text, "map.txt")?;
+        assert_eq!(
+            (&*read.title, &*read.channels),
+            ("a\u{fffd}[2Jb", &["a\u{fffd}[2Jb".to_string()][..])
+        );
+        assert!(read.understood.contains("by \u{fffd}]0;c\u{fffd} and \u{fffd}3m"));
+        let shown = format!("{read} {} {:?}", read.understood, read.notes);
+        assert!(!shown.contains(char::is_control), "{shown:?}");
+        // The name that was told is the one to ask for.
+        assert!(ReadOptions::new().channel("a\u{fffd}[2Jb").read_bytes(&text, "map.txt").is_ok());
+        for text in [
+            format!("{head}# Value units: \x1b[1m V\n{rows}"),
+            format!("{head}{rows}1 2 \x1b[1m 3\n"),
+        ] {
+            let refused = ReadOptions::new().read_bytes(&text, "map.txt");
+            let said = refused.map_err(|error| error.to_string());
+            assert!(
+                said.as_ref()
+                    .is_err_and(|said| said.contains("\u{fffd}[1m") && !said.contains('\x1b')),
+                "{said:?}"
+            );
+        }
         Ok(())
     }
 

@@ -25,6 +25,8 @@ pub(super) struct Channel {
     pub(super) mask: Option<Vec<bool>>,
     /// How the file was understood, where its format leaves that open.
     pub(super) understood: String,
+    /// What the user should know of a side that is given in place of that of the file.
+    pub(super) note_of_side: Option<String>,
     /// What the user should know: a checksum that does not match, a header that contradicts itself.
     pub(super) notes: Vec<String>,
 }
@@ -46,6 +48,7 @@ impl Channel {
             lateral_unit: Some("m".to_string()),
             mask: None,
             understood: String::new(),
+            note_of_side: None,
             notes: Vec::new(),
         }
     }

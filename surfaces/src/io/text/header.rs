@@ -1,5 +1,6 @@
 //! What stands above the numbers of a text: lines like `# Width: 10 µm`, and names of columns.
 
+use super::table::Table;
 use super::{markers, words};
 use crate::io::fault::Fault;
 use crate::io::unit::{LengthUnit, with_factor};
@@ -34,6 +35,10 @@ pub(super) struct Header {
     pub(super) missing: Option<f64>,
     /// The first number with a comma that may be a decimal one or part thousands.
     pub(super) doubtful: Option<String>,
+    /// How many heights are void, as SPIP says: then rows of a mask follow theirs.
+    void_count: Option<usize>,
+    /// The nodes that this mask marks.
+    pub(super) mask: Option<Vec<bool>>,
     /// The first line that only maps have: one of its sides, say.
     of_map: Option<String>,
     /// The first lines that say nothing that is known, and how many there are.
@@ -41,7 +46,7 @@ pub(super) struct Header {
     unread_count: usize,
 }
 
-/// Lines that are shown of those that are not understood, and their length.
+/// Lines that are shown of those that are not understood, and letters of any text of the file that is shown.
 const SHOWN: usize = 3;
 const SHOWN_LETTERS: usize = 40;
 
@@ -88,7 +93,7 @@ impl Header {
             && let Some(is_read) = self.add_value(key, value.trim())?
         {
             if is_of_map(key) {
-                self.of_map.get_or_insert_with(|| line.to_string());
+                self.of_map.get_or_insert_with(|| shown(line));
             }
             if !is_read {
                 self.leave(line);
@@ -111,7 +116,7 @@ impl Header {
     /// A line that is not used.
     fn leave(&mut self, line: &str) {
         if self.unread.len() < SHOWN {
-            self.unread.push(line.chars().take(SHOWN_LETTERS).collect());
+            self.unread.push(shown(line));
         }
         self.unread_count += 1;
     }
@@ -119,7 +124,7 @@ impl Header {
     /// A length, and a note of it where its comma may mean two things.
     fn length(&mut self, text: &str) -> Option<Length> {
         if may_part_thousands(text) {
-            self.doubtful.get_or_insert_with(|| text.to_string());
+            self.doubtful.get_or_insert_with(|| shown(text));
         }
         Length::parse(text)
     }
@@ -128,8 +133,10 @@ impl Header {
     fn factor_of(&mut self, key: &str, value: &str) -> Result<f64, Fault> {
         let factor = self.length(value).ok_or_else(|| {
             fault!(
-                "the heights have to be multiplied by '{key}', but '{value}' does not begin with a number; \
-                 write it with a decimal point, and without signs that part thousands"
+                "the heights have to be multiplied by '{}', but '{}' does not begin with a number; \
+                 write it with a decimal point, and without signs that part thousands",
+                shown(key),
+                shown(value)
             )
         })?;
         Ok(factor.value)
@@ -160,6 +167,9 @@ impl Header {
         } else if is(ROWS) {
             self.rows = value.parse().ok();
             is_read = self.rows.is_some();
+        } else if is("voidpixels") {
+            self.void_count = value.parse().ok();
+            is_read = self.void_count.is_some();
         } else if is("lateral units") {
             self.lateral_unit = some(value);
         } else if is("pixel size") || is("scale x") {
@@ -225,6 +235,34 @@ impl Header {
         Ok(())
     }
 
+    /// Takes the mask of SPIP from behind the heights: 0 for each that is void, 1 for any other (as in Gwyddion's
+    /// `spip-asc.c`).
+    pub(super) fn take_mask(&mut self, table: &mut Table) -> Result<(), Fault> {
+        let Some(count) = self.void_count.filter(|count| *count > 0) else {
+            return Ok(());
+        };
+        let is_mask = |rows: &[f64]| rows.iter().all(|number| matches!(*number, 0.0 | 1.0));
+        let (columns, rows) = (table.columns, table.rows());
+        if self.rows == Some(rows) {
+            return Ok(());
+        }
+        let nodes = table.values.len() / 2;
+        ensure!(
+            self.columns == Some(columns)
+                && self.rows.is_some_and(|stated| 2 * stated == rows)
+                && table.values.get(nodes..).is_some_and(is_mask),
+            "the header says that {count} of the heights are void: it has to say as well how many columns and rows \
+             there are, and as many rows of 0, where the height is void, and 1 are expected behind those of the \
+             heights; there are {rows} rows of {columns} numbers in all; without the line 'voidpixels' all are \
+             read as heights"
+        );
+        let mask = table.values.split_off(nodes);
+        self.mask = Some(mask.into_iter().map(|valid| valid == 0.0).collect());
+        // An empty line before the mask parts no maps.
+        table.second_block = None;
+        Ok(())
+    }
+
     /// What is said of lines that are not understood.
     pub(super) fn unread(&self) -> String {
         let more = if self.unread_count > self.unread.len() { ", ..." } else { "" };
@@ -247,7 +285,9 @@ impl Header {
             if let (Some(name), Some(head)) = (name, head) {
                 ensure!(
                     ratio(Some(name), Some(head)) == Some(1.0),
-                    "of {of}, the name of the column says '{name}', but the header '{head}'"
+                    "of {of}, the name of the column says '{}', but the header '{}'",
+                    shown(name),
+                    shown(head)
                 );
             }
         }
@@ -266,7 +306,14 @@ impl Header {
             let is_mark = |number: f64| (number - missing).abs() <= SAME_MARK * missing.abs();
             numbers.iter_mut().filter(|number| is_mark(**number)).for_each(|n| *n = f64::NAN);
         }
+        // A mask says it of every node.
+        if self.mask.is_some() {
+            return;
+        }
         notes.append(&mut markers::remove(numbers));
+        notes.extend(self.void_count.filter(|count| *count > 0).map(|count| {
+            format!("the header says that {count} of the heights are void, but no rows behind them say which")
+        }));
     }
 
     /// Whether it says that there is a matrix: it gives sides, or numbers of columns and rows.
@@ -359,12 +406,17 @@ impl Header {
         let of_y = if std::ptr::eq(x, y) { of_x } else { of_y };
         let (unit_x, unit_y) = (x.unit.as_ref().or(of_x), y.unit.as_ref().or(of_y));
         let ratio = ratio(unit_y, unit_x).ok_or_else(|| {
-            let [width, height] = [unit_x, unit_y].map(|unit| unit.map_or("", |unit| unit));
+            let [width, height] = [unit_x, unit_y].map(|unit| shown(unit.map_or("", |unit| unit)));
             fault!("the header gives the width in '{width}', but the height in '{height}'")
         })?;
         let cell = (x.value / nx as f64, y.value * ratio / ny as f64);
         Ok((Some(cell), unit_x.cloned()))
     }
+}
+
+/// The beginning of a text of the file, as it is shown.
+pub(super) fn shown(text: &str) -> String {
+    text.chars().take(SHOWN_LETTERS).collect()
 }
 
 fn is_same_step(step: f64, cell: f64) -> bool {

@@ -3,7 +3,7 @@
 use crate::number::counted;
 
 /// How many times the range of all other heights a number has to be away from them: one that programs use as a mark,
-/// and any other that occurs more than once.
+/// and any other that occurs more than once, of which a word is said.
 const FAR: f64 = 1.0;
 const VERY_FAR: f64 = 10.0;
 
@@ -28,10 +28,13 @@ const ENOUGH: usize = 16;
 /// Most different marks in a file: below the heights, above, for what was too dark and what was too bright.
 const MOST: usize = 4;
 
-/// Makes NaN of marks. Returns what is said of each.
+/// Makes NaN of marks. Returns what is said of each, and of numbers that may be marks of an unusual kind: the ground
+/// far below a surface looks the same, so that they stay heights.
 pub(super) fn remove(values: &mut [f64]) -> Vec<String> {
     let mut notes = Vec::new();
-    while let Some(mark) = find(values).filter(|_| notes.len() < MOST) {
+    while let Some((mark, _)) =
+        ends(values).into_iter().find(is_mark).filter(|_| notes.len() < MOST)
+    {
         let mut count = 0;
         for value in values.iter_mut().filter(|value| **value == mark) {
             *value = f64::NAN;
@@ -42,26 +45,37 @@ pub(super) fn remove(values: &mut [f64]) -> Vec<String> {
             counted(count, "node")
         ));
     }
+    for (number, distance) in ends(values).into_iter().filter(|end| end.1 > VERY_FAR) {
+        let finite = || values.iter().filter(|value| value.is_finite());
+        let count = finite().filter(|value| **value == number).count();
+        if count > 1 && finite().count() - count >= ENOUGH {
+            notes.push(format!(
+                "{} have the number {number:?}, {distance:.0} times the range of all others away from them, and it is \
+                 taken as their height; if it stands for missing heights, write 'NODATA_value {number:?}' in a line \
+                 above the numbers",
+                counted(count, "node")
+            ));
+        }
+    }
     notes
 }
 
-/// A number far outside of all others.
-fn find(values: &[f64]) -> Option<f64> {
-    let (low, high) = range(values, f64::NAN)?;
-    [low, high].into_iter().find(|mark| {
-        let Some((rest_low, rest_high)) = range(values, *mark) else {
-            return false;
-        };
-        let extent = rest_high - rest_low;
-        let distance = (rest_low - mark).max(mark - rest_high);
-        let is_usual = mark.abs() >= HUGE || USUAL.contains(&mark.abs());
-        let count = |is_it: bool| values.iter().filter(|value| (*value == mark) == is_it).count();
-        let is_repeated = || count(true) > 1 && count(false) >= ENOUGH;
-        // Heights of two values only are steps.
-        extent > 0.0
-            && (is_usual && distance > FAR * extent
-                || distance > VERY_FAR * extent && is_repeated())
-    })
+/// Whether a number, so many times the range of all others away from them, is one that programs write for a missing
+/// value.
+fn is_mark((number, distance): &(f64, f64)) -> bool {
+    *distance > FAR && (number.abs() >= HUGE || USUAL.contains(&number.abs()))
+}
+
+/// The least and the greatest number, and how many times the range of all others each is away from them. Heights of two
+/// values only are steps: their others have no range.
+fn ends(values: &[f64]) -> Vec<(f64, f64)> {
+    let ends = range(values, f64::NAN).map(|(low, high)| [low, high]);
+    let with_distance = |end: f64| {
+        let (low, high) = range(values, end)?;
+        let distance = (low - end).max(end - high) / (high - low);
+        (high > low).then_some((end, distance))
+    };
+    ends.into_iter().flatten().filter_map(with_distance).collect()
 }
 
 /// The least and the greatest of the finite values but one.

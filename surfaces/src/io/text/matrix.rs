@@ -30,11 +30,14 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
             lateral_unit = of_x.filter(|_| ratio.is_some()).cloned();
         }
     }
-    if table.has_margins && header.has_sides() {
-        notes.push(
-            "columns without any number at the edges are left out, and cells follow from the sides without them"
-                .to_string(),
-        );
+    let mut note_of_side = table.margins.filter(|_| columns > 1).map(|margins| {
+        format!(
+            "the side along x is that of the {columns} columns that are read: {margins} not counted, unless NaN is \
+             written there"
+        )
+    });
+    if header.has_sides() {
+        notes.extend(note_of_side.take());
     }
     let told = table.told();
     let mut values = table.values;
@@ -44,6 +47,7 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
         height_unit: header.value_unit.clone(),
         lateral_unit,
         understood: format!("{} of {}, {told}", counted(rows, "row"), counted(columns, "height")),
+        note_of_side,
         notes,
         ..Channel::in_metres(shape, values, cell)
     })

@@ -45,6 +45,7 @@ use super::raw::{Channel, Parsed};
 
 /// Whether bytes could be text: no zeros, and hardly any other control characters, in the first 64 KiB.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
+    let bytes = without_end_of_file(bytes);
     let begin = bytes.get(..1 << 16).unwrap_or(bytes);
     if is_utf16(begin) {
         return true;
@@ -58,7 +59,16 @@ fn is_utf16(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")
 }
 
+/// A text without the byte that ends one on DOS. Blanks before it may be cells.
+fn without_end_of_file(mut text: &[u8]) -> &[u8] {
+    while let Some(before) = text.trim_ascii_end().strip_suffix(b"\x1a") {
+        text = before;
+    }
+    text
+}
+
 pub(super) fn parse(file: &[u8], path: &Path, layout: Option<TextLayout>) -> Parsed {
+    let file = without_end_of_file(file);
     ensure!(!is_utf16(file), "it is encoded as UTF-16: save it as UTF-8");
     let mark = "\u{feff}".as_bytes();
     let skipped = if file.starts_with(mark) { mark.len() } else { 0 };
@@ -81,7 +91,7 @@ pub(super) fn parse(file: &[u8], path: &Path, layout: Option<TextLayout>) -> Par
     let channel = generic(&header, table, is_xyz, layout)?;
     let understood = channel.understood + &header.unread();
     let factor = header.factor.unwrap_or(1.0);
-    Ok(vec![Channel { name: header.title, factor, understood, ..channel }])
+    Ok(vec![Channel { name: header.title, factor, understood, mask: header.mask, ..channel }])
 }
 
 /// The maps of a text of known layout, with what is said of another one.
@@ -103,7 +113,7 @@ fn generic(
     layout: Option<TextLayout>,
 ) -> Result<Channel, Fault> {
     ensure!(
-        layout.is_some() || !table.has_margins || table.rows() > arrangement::FEW_ROWS,
+        layout.is_some() || table.margins.is_none() || table.rows() > arrangement::FEW_ROWS,
         "every line ({} in all) begins or ends with an empty cell: whether that is a node without a height cannot be told from so few; \
          without such cells, or with `ReadOptions::layout`, it is read",
         table.rows()
@@ -121,7 +131,7 @@ fn generic(
             !header.ends_with_names || names::of_profile(header, &table).is_some(),
             "the line '{}' above the numbers names columns, but not one of the {} that there are as x, one as y and one \
              as the height",
-            names.unwrap_or_default(),
+            header::shown(names.unwrap_or_default()),
             table.columns
         );
     }
@@ -158,6 +168,10 @@ fn generic(
 
 /// The map of a list of points.
 fn list(header: &Header, list: List, table: &Table) -> Result<Channel, Fault> {
+    ensure!(
+        header.mask.is_none(),
+        "the header says that a mask follows, as it does a matrix alone"
+    );
     let (columns, map) = *list;
     let mut channel = map.channel()?;
     let [x, y, z] = columns.units.each_ref().map(Option::as_ref);

@@ -1,10 +1,13 @@
 //! Names of columns: which of them are x, y and z, and their units.
 
-use super::header::Header;
+use super::header::{Header, shown};
 use super::table::Table;
 use super::words::{Kind, kind, words};
 use crate::io::fault::Fault;
 use crate::io::unit::LengthUnit;
+
+/// Most names that a message lists.
+const LISTED: usize = 12;
 
 /// The columns of a list of points.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -52,27 +55,38 @@ impl Columns {
             return Ok(None);
         }
         let kinds: Vec<Option<Kind>> = names.iter().map(|name| kind_of(name)).collect();
-        let only = |wanted| {
-            let mut places = (0..kinds.len()).filter(|k| kinds.get(*k) == Some(&Some(wanted)));
+        let only_one = |is_it: &dyn Fn(usize) -> bool| {
+            let mut places = (0..names.len()).filter(|k| is_it(*k));
             places.next().filter(|_| places.next().is_none())
         };
+        let only = |wanted| only_one(&|k| kinds.get(k) == Some(&Some(wanted)));
         let (Some(x), Some(y)) = (only(Kind::X), only(Kind::Y)) else {
             return Ok(None);
         };
-        let is_z =
-            |name: &String| words(name).next().is_some_and(|word| word.eq_ignore_ascii_case("z"));
-        let mut called_z = (0..names.len()).filter(|k| names.get(*k).is_some_and(is_z));
-        let called_z = called_z.next().filter(|_| called_z.next().is_none());
+        let begins_with_z =
+            |name: &str| words(name).next().is_some_and(|word| word.eq_ignore_ascii_case("z"));
+        // Not z of something: its deviation, or what it was before.
+        let is_z = |name: &str| {
+            begins_with_z(name)
+                && words(name).skip(1).all(|word| LengthUnit::in_file(word).is_some())
+        };
+        let called = |fits: &dyn Fn(&str) -> bool| {
+            only_one(&|k| names.get(k).is_some_and(|name| fits(name)))
+        };
+        let called_z = called(&is_z).or_else(|| called(&begins_with_z));
         let third = (names.len() == 3).then(|| 3 - x - y);
         let z = called_z.or_else(|| only(Kind::Z)).or(third).ok_or_else(|| {
+            let listed: Vec<String> = names.iter().take(LISTED).map(|name| shown(name)).collect();
             fault!(
-                "of the columns {} it is not clear which has the heights: call one of them z",
-                names.join(", ")
+                "of the columns {}{} it is not clear which has the heights: call one of them z",
+                listed.join(", "),
+                if names.len() > LISTED { ", ..." } else { "" }
             )
         })?;
         let name = |k: usize| names.get(k).map(String::as_str).unwrap_or_default();
         let units = [x, y, z].map(|k| unit(name(k)));
-        let how = format!("columns {}, {}, {} by name", name(x), name(y), name(z));
+        let [of_x, of_y, of_z] = [x, y, z].map(|k| shown(name(k)));
+        let how = format!("columns {of_x}, {of_y}, {of_z} by name");
         Ok(Some(Self { x, y, z, units, how }))
     }
 }

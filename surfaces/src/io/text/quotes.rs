@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::header::may_part_thousands;
+use super::header::{may_part_thousands, shown};
 use super::table::Table;
 use crate::io::fault::Fault;
 
@@ -31,7 +31,7 @@ impl Commas {
             self.are_decimal || self.count == 0 || self.count >= numbers,
             "the comma of '{}' in quotes parts thousands or is a decimal one, while other numbers have none: write it \
              as a point, or leave it out",
-            self.first
+            shown(&self.first)
         );
         Ok(())
     }

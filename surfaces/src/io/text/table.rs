@@ -3,7 +3,7 @@
 use crate::io::fault::Fault;
 
 use super::dialect::{Cells, Dialect, is_row};
-use super::header::Header;
+use super::header::{Header, shown};
 use super::run::{Run, UNEVEN};
 use crate::io::lines::{Line, Lines};
 use crate::number::counted;
@@ -16,20 +16,14 @@ pub(super) struct Table {
     pub(super) dialect: Dialect,
     /// The line after the first empty one between rows, unless there is one between any two.
     pub(super) second_block: Option<usize>,
-    /// Whether empty cells at the beginning or at the end of all lines were left out.
-    pub(super) has_margins: bool,
+    /// Which empty cells, at the beginning or at the end of all lines, were left out.
+    pub(super) margins: Option<&'static str>,
 }
 
 impl Table {
     /// Points x, y, z.
     pub(super) fn of_points(values: Vec<f64>) -> Self {
-        Self {
-            columns: 3,
-            values,
-            dialect: Dialect::BLANKS,
-            second_block: None,
-            has_margins: false,
-        }
+        Self { columns: 3, values, dialect: Dialect::BLANKS, second_block: None, margins: None }
     }
 
     /// The numbers in the next lines, and in no others.
@@ -54,7 +48,7 @@ impl Table {
 
     /// How the text is written.
     pub(super) fn told(&self) -> String {
-        let margins = if self.has_margins {
+        let margins = if self.margins.is_some() {
             "; empty cells at the beginning or the end of all lines are no nodes"
         } else {
             ""
@@ -102,13 +96,8 @@ impl Table {
 
     fn read(lines: Lines, most: Option<usize>, stated: Option<usize>) -> Result<Self, Fault> {
         let dialect = Dialect::of(&lines);
-        let mut table = Self {
-            columns: 0,
-            values: Vec::new(),
-            dialect,
-            second_block: None,
-            has_margins: false,
-        };
+        let mut table =
+            Self { columns: 0, values: Vec::new(), dialect, second_block: None, margins: None };
         let (mut first, mut leading_of_first) = (0, 0);
         // Whether every row begins, or ends, with an empty cell: the separator belongs to the margin then.
         let (mut begins_empty, mut ends_empty) = (true, true);
@@ -200,7 +189,8 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
                 header.add(&line.text())?;
             }
             let first = rows.into_iter().next().map_or(ahead, |(lines, _)| lines);
-            let table = Table::read(first, None, header.stated_columns())?;
+            let mut table = Table::read(first, None, header.stated_columns())?;
+            header.take_mask(&mut table)?;
             if let Some(line) = unknown {
                 table.check_above(&line)?;
             }
@@ -248,7 +238,7 @@ fn row(line: &Line, dialect: Dialect, values: &mut Vec<f64>) -> Result<(usize, b
             "line {} has {} in one cell, '{}': part all numbers by one sign, and write none with a blank in it",
             line.number,
             counted(values.len() - before, "number"),
-            String::from_utf8_lossy(text.trim_ascii())
+            shown(&String::from_utf8_lossy(text.trim_ascii()))
         );
         only_empty &= ends_empty;
         leading += usize::from(only_empty);
@@ -281,8 +271,7 @@ fn cell(line: &Line, text: &[u8], dialect: Dialect, values: &mut Vec<f64>) -> Re
 
 /// What is said of a word that is no number.
 fn no_number(line: &Line, word: &[u8]) -> String {
-    let shown = String::from_utf8_lossy(word.get(..40).unwrap_or(word));
-    format!("'{shown}' in line {} is no number", line.number)
+    format!("'{}' in line {} is no number", shown(&String::from_utf8_lossy(word)), line.number)
 }
 
 /// Whether a line has nothing on it. A row of empty cells between tabs has: as many tabs as the others.
@@ -308,5 +297,9 @@ fn drop_margins(table: &mut Table, first: bool, last: bool) {
         keep
     });
     table.columns = kept;
-    table.has_margins = true;
+    table.margins = Some(match (first, last) {
+        (true, true) => "empty columns at the left and at the right are",
+        (true, false) => "an empty column at the left is",
+        _ => "an empty column at the right is",
+    });
 }

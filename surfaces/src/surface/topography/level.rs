@@ -201,49 +201,48 @@ impl Topography {
 /// What a trend and its subtraction may round, of the greatest height.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The nodes from the first to the last measured one along an axis.
+/// The lines across an axis on which nodes were measured.
 #[derive(Debug, Clone, Copy)]
-struct Axis {
-    /// In cells from the border of the map.
+struct Lines {
+    /// Half-way from the first to the last, in cells from the border of the map.
     center: f64,
     /// Half of the way between the two, in cells; 1 if they are the same.
     half: f64,
-    lines: usize,
+    count: usize,
 }
 
-impl Axis {
-    fn of(first: usize, last: usize) -> Self {
-        let center = 0.5 * (first + last) as f64 + 0.5;
+impl Lines {
+    /// Of those that are marked; `None` without any.
+    fn of(measured: &[bool]) -> Option<Self> {
+        let first = measured.iter().position(|is_measured| *is_measured)?;
+        let last = measured.iter().rposition(|is_measured| *is_measured)?;
         let half = if last > first { 0.5 * (last - first) as f64 } else { 1.0 };
-        Self { center, half, lines: last - first + 1 }
+        let count = measured.iter().filter(|is_measured| **is_measured).count();
+        Some(Self { center: 0.5 * (first + last) as f64 + 0.5, half, count })
     }
 
-    /// From −1 at the first node to 1 at the last.
-    fn place(&self, node: usize) -> f64 {
-        (node as f64 + 0.5 - self.center) / self.half
+    /// From −1 at the first line to 1 at the last.
+    fn place(&self, line: usize) -> f64 {
+        (line as f64 + 0.5 - self.center) / self.half
     }
 }
 
 /// The rectangle of all measured nodes.
 struct Span {
-    x: Axis,
-    y: Axis,
+    x: Lines,
+    y: Lines,
 }
 
 impl Span {
     /// `None` without any.
     fn of(heights: &DMatrix<f64>) -> Option<Self> {
-        let nx = heights.nrows();
-        let measured = heights.iter().enumerate().filter(|(_, z)| z.is_finite());
-        let mut ends: Option<[usize; 4]> = None;
-        for (ix, iy) in measured.map(|(k, _)| (k % nx, k / nx)) {
-            let [left, right, low, high] = ends.unwrap_or([ix, ix, iy, iy]);
-            ends = Some([left.min(ix), right.max(ix), low.min(iy), high.max(iy)]);
+        let (nx, ny) = heights.shape();
+        let (mut along_x, mut along_y) = (vec![false; nx], vec![false; ny]);
+        for (k, _) in heights.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+            along_x[k % nx] = true;
+            along_y[k / nx] = true;
         }
-        ends.map(|[left, right, low, high]| Self {
-            x: Axis::of(left, right),
-            y: Axis::of(low, high),
-        })
+        Some(Self { x: Lines::of(&along_x)?, y: Lines::of(&along_y)? })
     }
 
     /// Coefficients of 1, X, Y, X², XY and Y², each place between −1 and 1; 0 of those that the trend or the nodes do
@@ -251,7 +250,7 @@ impl Span {
     fn fit(&self, heights: &DMatrix<f64>, trend: Trend) -> [f64; 6] {
         let is_plane = trend != Trend::Mean;
         let is_curved = trend == Trend::Quadratic;
-        let (across, along) = (self.x.lines, self.y.lines);
+        let (across, along) = (self.x.count, self.y.count);
         let takes_part = [
             true,
             is_plane && across > 1,

@@ -1,7 +1,9 @@
 //! Cells that hold no number, and what parts them.
 
-use super::{MISSING, TestResult, assert_refused, matrix, numbers, parsed, parsed_with};
-use crate::io::TextLayout;
+use super::{
+    MISSING, TestResult, assert_refused, looks_like, matrix, numbers, parsed, parsed_with,
+};
+use crate::io::{ReadOptions, TextLayout};
 
 /// Twelve rows of ten heights, of which `cell` is written in other words.
 fn table(separator: &str, cell: impl Fn(usize, usize) -> Option<String>) -> String {
@@ -128,7 +130,68 @@ fn empty_columns_beside_a_map_with_sides_are_noted() -> TestResult {
     let rows = ";3;1;4\n;9;2;6\n;5;8;9\n;2;3;8\n";
     let channel = parsed(format!("{sides}{rows}"))?;
     assert_eq!((channel.shape, channel.cell), ((3, 4), Some((1.0, 1.0))));
-    assert!(channel.notes.len() == 1 && channel.notes[0].contains("columns without any number"));
+    assert!(channel.notes.len() == 1 && channel.notes[0].contains("an empty column at the left"));
+    // So is a side that the user gives, of which only the reader of options knows.
+    let options = ReadOptions::new().height_unit("um".parse()?).layout(TextLayout::Matrix);
+    for (text, place) in
+        [(rows, "an empty column at the left is"), ("3;1;4;\n9;2;6;\n5;8;9;\n2;3;8;\n", "right is")]
+    {
+        let unknown = options.read_bytes(text, "map.txt")?;
+        assert!(unknown.notes.is_empty(), "{:?}", unknown.notes);
+        let read = options.clone().side(3e-3).side_y(4e-3).read_bytes(text, "map.txt")?;
+        assert_eq!(read.cell, Some((1e-3, 1e-3)));
+        let said = format!("{place} not counted, unless NaN is written there");
+        assert!(read.notes.len() == 1, "{:?}", read.notes);
+        assert!(read.notes[0].starts_with("the side along x is that of the 3 columns"));
+        assert!(read.notes[0].contains(&said), "{:?}", read.notes);
+    }
+    let counted = rows.replacen(';', "NaN;", 1);
+    let counted = options.side(4e-3).side_y(4e-3).read_bytes(counted, "map.txt")?;
+    assert_eq!((counted.heights.shape(), counted.notes.len()), ((4, 4), 0));
+    Ok(())
+}
+
+/// The ground below a disc, and a plateau: only numbers that programs use as marks are no heights.
+#[test]
+fn a_repeated_number_far_from_all_others_stays_a_height() -> TestResult {
+    let ground = |number: &str| {
+        let is_ground = |x: usize, y: usize| (x + y).is_multiple_of(3);
+        table(" ", |x, y| is_ground(x, y).then(|| number.to_string()))
+    };
+    let count = (0..120).filter(|k: &usize| (k % 10 + k / 10).is_multiple_of(3)).count();
+    for number in ["-1e5", "123456.5"] {
+        let channel = matrix(ground(number))?;
+        let number: f64 = number.parse()?;
+        assert_eq!(channel.values.iter().filter(|z| **z == number).count(), count);
+        let said = format!("{count} nodes have the number {number:?}, ");
+        assert!(channel.notes.len() == 1, "{:?}", channel.notes);
+        assert!(channel.notes[0].starts_with(&said), "{:?}", channel.notes);
+        // What the note advises.
+        let line = format!("NODATA_value {number:?}");
+        assert!(channel.notes[0].contains(&format!("write '{line}' in a line")));
+        let marked = matrix(format!("{line}\n{}", ground(&number.to_string())))?;
+        assert_eq!(marked.values.iter().filter(|z| z.is_nan()).count(), count);
+        assert!(marked.notes.is_empty(), "{:?}", marked.notes);
+    }
+    for number in ["-9999", "32767", "-1e30", "3.4e38"] {
+        let channel = matrix(ground(number))?;
+        assert_eq!(channel.values.iter().filter(|z| z.is_nan()).count(), count, "{number}");
+        assert!(channel.notes[0].contains("are taken as missing"), "{:?}", channel.notes);
+    }
+    Ok(())
+}
+
+/// DOS ends a text with a byte of its own; tabs before it are cells.
+#[test]
+fn the_end_of_a_text_of_dos_is_no_number() -> TestResult {
+    let rows = "1\t2\t3\n4\t5\t\n7\t8\t9\n1\t2\t";
+    for end in ["\x1a", "\r\n\x1a", "\r\n\x1a\x1a\r\n", "\n\x1a \n"] {
+        let text = format!("{rows}{end}");
+        assert!(looks_like(text.as_bytes()), "{end:?}");
+        let (shape, values) = numbers(&text)?;
+        assert_eq!((shape, values[11]), ((3, 4), MISSING), "{end:?}");
+    }
+    assert_refused("1 2 3 4\n5 \x1a 7 8\n", "in line 2 is no number");
     Ok(())
 }
 

@@ -153,6 +153,60 @@ fn stated_marks_may_be_rounded_and_others_count_too() -> TestResult {
     Ok(())
 }
 
+/// SPIP writes 1 for each height that was measured, and 0 for each that was not, behind all heights.
+#[test]
+fn void_heights_of_spip_are_marked() -> TestResult {
+    let head = |count: usize| {
+        format!(
+            "# File Format = ASCII\n# x-pixels = 4\n# y-pixels = 4\n# x-length = 4000\n# y-length = 4000\n\
+             # z-unit = nm\n# voidpixels = {count}\n# Start of Data:\n"
+        )
+    };
+    let mask = "1 1 1 0\n1 1 1 1\n1 1 1 1\n0 1 1 1\n";
+    for between in ["", "\n", "# valid\n"] {
+        let text = format!("{}{ROWS}{between}{mask}", head(2));
+        let read = ReadOptions::new().read_bytes(&text, "map.asc")?;
+        assert_eq!((read.heights.shape(), read.missing), ((4, 4), 2), "{between:?}");
+        assert!(read.heights[(3, 0)].is_nan() && read.heights[(0, 3)].is_nan());
+        assert_eq!(read.notes, ["2 nodes that a mask marks are taken as missing"]);
+        let all = ReadOptions::new().ignore_mask().read_bytes(&text, "map.asc")?;
+        assert_eq!((all.missing, all.heights[(3, 0)]), (0, 5e-9));
+    }
+    let none = parsed(format!("{}{ROWS}", head(0)))?;
+    assert_eq!((none.shape, none.notes.len(), none.mask), ((4, 4), 0, None));
+    let lone = parsed(format!("{}{ROWS}", head(2)))?;
+    let said = "2 of the heights are void, but no rows behind them say which";
+    assert!(lone.shape == (4, 4) && lone.notes.iter().any(|note| note.contains(said)));
+    let doubtful = mask.replacen('1', "0.5", 1);
+    for text in [
+        format!("{}{ROWS}{doubtful}", head(2)),
+        format!("{}{ROWS}1 1 1 0\n", head(2)),
+        format!("{}{ROWS}{mask}", head(2).replace("# x-pixels = 4\n", "")),
+    ] {
+        assert_refused(
+            text,
+            "the header says that 2 of the heights are void: it has to say as well",
+        );
+    }
+    Ok(())
+}
+
+/// A file may have anything in it, and be of any length.
+#[test]
+fn texts_of_files_are_shown_in_part() {
+    let long = "z".repeat(1000);
+    for text in [
+        format!("x;y;{long};{long}\n0;0;1;1;1\n"),
+        format!("# Width: 1 m {long}\n1\n2\n3\n4\n"),
+        format!("# Bit2nm: {long}\n1 2 3\n"),
+        format!("x;y;z {long};z {long}\n0;0;1;1\n1;0;1;1\n"),
+        format!("1;2;3 4{long}\n").replace('z', "1"),
+    ] {
+        let refused = parsed(&text).map_err(|error| error.to_string());
+        assert!(refused.as_ref().is_err_and(|said| said.len() < 600), "{refused:?}");
+    }
+}
+
 /// Texts of two makers, which know their layout, and one that is not read.
 #[test]
 fn texts_of_instruments_are_named() -> TestResult {

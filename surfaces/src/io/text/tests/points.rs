@@ -135,6 +135,24 @@ fn long_tables_of_few_columns_are_lists() -> TestResult {
     Ok(())
 }
 
+/// One of several names that begin with z is nothing but that.
+#[test]
+fn a_column_called_z_has_the_heights() -> TestResult {
+    let rows = "0;0;7;1\n0;1;8;2\n1;0;9;3\n1;1;6;4\n";
+    for (names, values) in [
+        ("x;y;z;z_std", [7.0, 9.0, 8.0, 6.0]),
+        ("x;y;z_raw;z", [1.0, 3.0, 2.0, 4.0]),
+        ("x [mm];y [mm];Z (µm);z_std (µm)", [7.0, 9.0, 8.0, 6.0]),
+        ("x_um;y_um;z_raw_um;z_um", [1.0, 3.0, 2.0, 4.0]),
+    ] {
+        assert_eq!(parsed(format!("{names}\n{rows}"))?.values, values, "{names}");
+    }
+    for names in ["x;y;z_raw;z_std", "x;y;z;z", "x;y;z [um];z [nm]"] {
+        assert_refused(format!("{names}\n{rows}"), "it is not clear which has the heights");
+    }
+    Ok(())
+}
+
 /// The message says what lacks, not how many names there are.
 #[test]
 fn names_without_one_x_and_one_y_are_refused() {
