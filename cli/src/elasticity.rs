@@ -16,6 +16,9 @@ use crate::layers::{BaseArgument, LayerArgument, described};
 use crate::material::Material;
 use crate::values::PRESSURE;
 
+/// How far E* of bodies may be from that of a path: materials are given with three digits.
+const SAME_MODULUS: f64 = 1e-3;
+
 /// How stiff the two bodies are.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Elasticity {
@@ -124,6 +127,19 @@ impl Bodies {
     /// What looks wrong with the greatest pressure of a contact in which nothing yields.
     pub(crate) fn warning_of(&self, pressure: f64) -> Option<Warning> {
         Warning::of_pressure(pressure, self.e_star, self.hardness)
+    }
+
+    /// That a path is of others, of which no more is used than some property.
+    pub(crate) fn warning_of_path(&self, record: &LoadingRecord, used: &str) -> Option<String> {
+        let e_star = record.kernel().origin.composite_modulus()?;
+        let is_same = (self.e_star / e_star - 1.0).abs() < SAME_MODULUS;
+        (!is_same).then(|| {
+            format!(
+                "the path has been computed with E* {}, and these bodies have {}: only {used} is used",
+                quantity(e_star, "Pa", 4),
+                quantity(self.e_star, "Pa", 4)
+            )
+        })
     }
 
     /// What they are made of, for what follows from a contact.

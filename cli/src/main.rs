@@ -88,8 +88,8 @@ struct Arguments {
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0: done; 1: an error, and what was computed before it is written; 2: arguments that cannot be read; \
-    130: interrupted by Ctrl-C or SIGTERM, and the path so far is saved; of --seeds the finished paths stay, and the \
-    one in work is dropped.";
+    130: a path interrupted by Ctrl-C or SIGTERM; while it adds states, those so far are saved; of --seeds the finished \
+    paths stay, and the one in work begins anew.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

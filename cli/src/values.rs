@@ -272,6 +272,18 @@ pub(crate) fn fraction(text: &str) -> Result<f64, String> {
     checked(SHARE.read(text)?, is, "a fraction must be above 0 and at most 1 (10% is 0.1)")
 }
 
+/// A part that is not all.
+pub(crate) fn part(text: &str) -> Result<f64, String> {
+    let is = |value| value > 0.0 && value < 1.0;
+    checked(SHARE.read(text)?, is, "must be above 0 and below 1 (1% is 0.01)")
+}
+
+/// A Hurst exponent.
+pub(crate) fn hurst(text: &str) -> Result<f64, String> {
+    let is = |value| value > 0.0 && value <= 1.0;
+    checked(number(text)?, is, "a Hurst exponent must be above 0 and at most 1")
+}
+
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "not a number".to_string())
 }
@@ -441,7 +453,13 @@ mod tests {
     fn parts_and_ratios_have_bounds() {
         type Reader = fn(&str) -> Result<f64, String>;
         type Case = (Reader, &'static [(&'static str, f64)], &'static [&'static str]);
-        let cases: [Case; 3] = [
+        let cases: [Case; 5] = [
+            (
+                part,
+                &[("0.01", 0.01), ("1%", 0.01), ("99.9 %", 0.999)],
+                &["0", "1", "100%", "2", "-0.1", "nan", "inf", "1mm", ""],
+            ),
+            (hurst, &[("0.8", 0.8), ("1", 1.0)], &["0", "1.000001", "-0.5", "nan", "80%", ""]),
             (
                 fraction,
                 &[("1", 1.0), ("100%", 1.0), ("0.5 %", 5e-3), ("1e-300", 1e-300)],

@@ -412,6 +412,18 @@ fn histories_from_files() -> Done {
     // Steps of 0.05 had 95 nodes there; finer ones agree but for the error of those.
     assert!((last[4] * 2304.0 - 95.0).abs() < 4.0, "{last:?}");
     assert!((last[3] / 1.206781625840581e-4 - 1.0).abs() < 0.01, "{last:?}");
+    // One that falls at once in the end has receded there.
+    fs::write(folder.join("jump.csv"), "time,load\n0,0\n1,3e-8\n1,1e-8\n2,1e-8\n")?;
+    fs::write(folder.join("back.csv"), "time,approach\n0,0\n1,1e-4\n1,5e-5\n")?;
+    for (history, quantity, last) in
+        [("jump.csv --time 1", "load", 1e-8), ("back.csv", "approach", 5e-5)]
+    {
+        let line = format!("creep path.npz {SERIES} --history {history} --out jump");
+        let found = answer(&folder.0, &line)?;
+        assert_eq!((&found["method"], number(&found, "recedes")), (&"steps".into(), 1.0));
+        assert_eq!(number(&found, "time"), 1.0);
+        assert!(is_near(number(&found, quantity), last, 1e-9), "{found}");
+    }
     fs::write(folder.join("approach.csv"), "time,approach\n0,0\n0,1e-4\n10,1e-4\n")?;
     run(&folder.0, &format!("creep path.npz {SERIES} --history approach.csv --out approach"))?;
     let (_, rows) = table(&folder.join("approach/creep.csv"))?;
@@ -419,6 +431,28 @@ fn histories_from_files() -> Done {
     let left = 0.2 + 0.3 * (-10.0_f64).exp();
     assert!((last[2] / first[2] / left - 1.0).abs() < 1e-12);
     assert_eq!(first[4], last[4]);
+    Ok(())
+}
+
+/// Wherever a history begins, it is drawn from there on.
+#[test]
+fn histories_begin_at_any_time() -> Done {
+    let folder = with_record("creep-times")?;
+    let fluid = "--viscosity 1e-3 --pressure-drop 1e-6 --along x --charts svg";
+    for (from, to) in [(-50, 0), (-60, -10), (-20, 30), (1_700_000_000, 1_700_000_050)] {
+        let history = format!("time,load\n{from},0\n{to},3e-8\n");
+        fs::write(folder.join("load.csv"), history)?;
+        let line = format!("creep path.npz {SERIES} --history load.csv {fluid} --out {from}");
+        run(&folder.0, &line)?;
+        for name in ["creep.svg", "leak_over_time.svg"] {
+            let chart = fs::read_to_string(folder.join(&format!("{from}/{name}")))?;
+            let labels = chart.split(['<', '>']).map(str::trim);
+            for tick in (from..=to).step_by(10) {
+                let count = labels.clone().filter(|label| *label == tick.to_string()).count();
+                assert!(count > 0, "{tick}: {chart}");
+            }
+        }
+    }
     Ok(())
 }
 
@@ -471,6 +505,14 @@ fn refusals() -> Done {
     assert_eq!(units, ["s", "N", "N", "%", "mm", "mm"], "{told}");
     let beyond = output(&folder.0, &format!("creep path.npz {SERIES} --approach 1"))?;
     is_refused(&beyond, &["from its beginning on", "--max-approach"]);
+    fs::write(folder.join("early.csv"), "time,approach\n-5,1\n-4,1\n")?;
+    let early = output(&folder.0, &format!("creep path.npz {SERIES} --history early.csv"))?;
+    is_refused(&early, &["from its beginning on", "--max-approach"]);
+    // Mean planes come no closer than in full contact.
+    run(&folder.0, "path --nodes 16 --periodic love --max-area-fraction 1 --record full.npz")?;
+    let closer = output(&folder.0, &format!("creep full.npz {SERIES} --approach 1 --ramp 1"))?;
+    is_refused(&closer, &["is enough until t = ", "come no closer than in full contact"]);
+    assert!(!said(&closer).contains("asperity path"), "{}", said(&closer));
     let shares = output(&folder.0, "creep path.npz --prony 1,0.6 2,0.6 --load 1e-7")?;
     is_refused(&shares, &["sum of the shares", "1.2"]);
     fs::write(folder.join("bad.csv"), "time,load\n1,1\n0,1\n")?;

@@ -292,9 +292,11 @@ fn joints_of_rows_conduct_by_the_interface() -> Result<(), Box<dyn Error>> {
     let path =
         "path --nodes 32 --max-area-fraction 0.3 --conductivity 50 --unresolved-roughness 1e-9 -q";
     for axis in ["x", "y"] {
-        let begun = format!("{path} --periodic {axis} --record r.npz --out begun");
-        let again = "path --resume r.npz --conductivity 50 --unresolved-roughness 1e-9 --fe-table csv --out again -q";
-        for line in [begun.as_str(), again] {
+        let begun = format!("{path} --periodic {axis} --record {axis}.npz --out begun");
+        let again = format!(
+            "path --resume {axis}.npz --conductivity 50 --unresolved-roughness 1e-9 --fe-table csv --out again -q"
+        );
+        for line in [&begun, &again] {
             let words: Vec<&str> = line.split_whitespace().collect();
             assert!(run(&folder, &words)?.status.success(), "{line}");
         }

@@ -105,6 +105,34 @@ fn what_the_model_leaves_out_is_said_of_paths() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// What is allowed is said of the option itself, before the work.
+#[test]
+fn values_out_of_bounds_are_refused_at_once() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("bounds")?;
+    for (line, expected, not) in [
+        ("path --hurst 2", "a Hurst exponent must be above 0 and at most 1", "fraction"),
+        (
+            "path --fe-table csv --fe-error 1",
+            "--fe-error <E>': must be above 0 and below 1",
+            "because",
+        ),
+        (
+            "path --fe-table csv --fe-error 100%",
+            "--fe-error <E>': must be above 0 and below 1",
+            "because",
+        ),
+    ] {
+        let done = output(&folder.0, line)?;
+        let told = said(&done);
+        assert_eq!(done.status.code(), Some(2), "{line}: {told}");
+        assert!(told.contains(expected) && !told.contains(not), "{line}: {told}");
+    }
+    assert!(!folder.join("out").exists());
+    let tenth = "path --nodes 16 --fe-table csv --fe-error 1%";
+    assert!(output(&folder.0, tenth)?.status.success());
+    Ok(())
+}
+
 #[test]
 fn a_record_without_a_command_gets_a_tip() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("record_tip")?;

@@ -75,10 +75,12 @@ fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
 #[test]
 fn charts_of_contacts_that_yield_have_no_elastic_theory() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("patches_yield")?;
-    for (hardness, is_elastic) in [("", true), ("--hardness 1e9", false)] {
-        let path = "path --nodes 16 --periodic love --mean-pressure 1e8 --record r.npz -q";
-        run(&folder.0, &format!("{path} {hardness}"))?;
-        run(&folder.0, "patches r.npz --charts svg --out seen")?;
+    for (record, hardness, is_elastic) in
+        [("elastic.npz", "", true), ("plastic.npz", "--hardness 1e9", false)]
+    {
+        let path = "path --nodes 16 --periodic love --mean-pressure 1e8 -q";
+        run(&folder.0, &format!("{path} {hardness} --record {record}"))?;
+        run(&folder.0, &format!("patches {record} --charts svg --out seen"))?;
         let chart = |name: &str| fs::read_to_string(folder.join("seen").join(name));
         assert_eq!(chart("distributions.svg")?.contains("Persson"), is_elastic);
         assert!(chart("merge_tree.svg")?.contains("first node"));
@@ -173,10 +175,13 @@ fn leads(map: &[bool], axis: usize, is_joined: bool) -> bool {
 #[test]
 fn the_object_is_what_a_walk_finds() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("patches-walk")?;
-    for (boundary, is_joined) in [("", false), ("--periodic love", true)] {
+    for (file, boundary, is_joined) in
+        [("free.npz", "", false), ("periodic.npz", "--periodic love", true)]
+    {
         let line = format!("path --nodes 16 {boundary} --e-star 1e11 --max-area-fraction 0.7 -q");
-        run(&folder.0, &format!("{line} --record p.npz --out path"))?;
-        let object = answer(&folder.0, "patches p.npz --at-area-fraction 0.35 --out seen")?;
+        run(&folder.0, &format!("{line} --record {file} --out path"))?;
+        let line = format!("patches {file} --at-area-fraction 0.35 --out seen");
+        let object = answer(&folder.0, &line)?;
 
         let table = folder.join("path/path.csv");
         let loads = numbers(&table, "load")?;
@@ -231,7 +236,7 @@ fn the_object_is_what_a_walk_finds() -> Result<(), Box<dyn Error>> {
         let area = most as f64 * cell;
         assert!((number(largest, "area") / area - 1.0).abs() < 1e-12, "{largest}");
 
-        let record = LoadingRecord::read_npz(folder.join("p.npz"))?;
+        let record = LoadingRecord::read_npz(folder.join(file))?;
         let state = record.history().at_area_fraction(0.35).ok_or("no state")?;
         let fields = record.replay()?.fields_at(&state)?;
         // Of several patches of that size any may be the one.

@@ -133,6 +133,6 @@ fn shells_and_manuals() -> Done {
     }
     assert_eq!(output(&folder.0, "manual nothing")?.status.code(), Some(1));
     let help = String::from_utf8(output(&folder.0, "--help")?.stdout)?;
-    assert!(help.contains("130: interrupted") && help.contains("--seeds"), "{help}");
+    assert!(help.contains("130: a path interrupted") && help.contains("--seeds"), "{help}");
     Ok(())
 }

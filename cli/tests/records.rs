@@ -226,12 +226,23 @@ fn a_small_budget_loses_nothing() -> Done {
 /// Waits until a path has begun, sends it a signal, and waits for its end.
 #[cfg(unix)]
 fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<dyn Error>> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    let mut process =
-        asperity(folder, &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     let begins = |folder: &Path| {
         fs::metadata(folder.join("path.csv.part")).is_ok_and(|file| file.len() > 10_000)
     };
+    signalled_once(folder, line, begins, signals)
+}
+
+/// The same, once its folder is as asked.
+#[cfg(unix)]
+fn signalled_once(
+    folder: &Path,
+    line: &str,
+    begins: impl Fn(&Path) -> bool,
+    signals: &[&str],
+) -> Result<Output, Box<dyn Error>> {
+    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    let mut process =
+        asperity(folder, &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     // Of many paths, each has a folder of its own.
     let out = folder.join("out");
     let begun = || {
@@ -249,7 +260,7 @@ fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<
     Ok(process.wait_with_output()?)
 }
 
-/// A record is replaced by a path of its own surface, and not by that of another one.
+/// A record is replaced by a path of its own surface and bodies, and not by that of others.
 #[test]
 fn a_record_of_another_surface_is_kept() -> Done {
     let folder = Scratch::new("records-kept")?;
@@ -266,7 +277,24 @@ fn a_record_of_another_surface_is_kept() -> Done {
     printed(&folder.0, "path --nodes 16 --seed 2 --record other.npz --max-area-fraction 0.1")?;
     let onto = "path --resume other.npz --record path.npz --max-area-fraction 0.2";
     is_refused(&output(&folder.0, onto)?, &["path.npz", "another surface"]);
+    let others = [
+        ("--material glass", "other bodies"),
+        ("--layer gold,2um --base steel", "other bodies"),
+        ("--periodic love", "another half-space"),
+        ("--hardness 2GPa", "another hardness"),
+        ("--material glass --work-of-adhesion 0.05", "other bodies"),
+    ];
+    for (other, what) in others {
+        let refused = output(&folder.0, &format!("{path} 0.1 {other}"))?;
+        is_refused(&refused, &["path.npz", what, "--record"]);
+    }
     assert_eq!(fs::read(folder.join("path.npz"))?, before);
+    // One that is the same replaces it.
+    for same in ["--hardness 2GPa", "--layer gold,2um --base steel", "--periodic love"] {
+        fs::remove_file(folder.join("path.npz"))?;
+        printed(&folder.0, &format!("{path} 0.1 {same}"))?;
+        printed(&folder.0, &format!("{path} 0.2 {same}"))?;
+    }
     Ok(())
 }
 
@@ -403,6 +431,21 @@ fn interrupted_paths_go_on() -> Done {
         assert_eq!(done.status.code(), Some(130), "{told}");
         assert!(told.contains("interrupted at seed 1") && !told.contains("unfinished"), "{told}");
         assert_eq!(fs::read_dir(folder.join("out"))?.count(), 0);
+    }
+    Ok(())
+}
+
+/// Before the first state too, what a batch system sends ends the program as Ctrl-C does.
+#[cfg(unix)]
+#[test]
+fn signals_before_the_first_state_have_the_same_code() -> Done {
+    let folder = Scratch::new("records-signals")?;
+    for signal in ["-INT", "-TERM"] {
+        let line = "path --nodes 1024 --max-area-fraction 0.1 --updater iterative";
+        let begins = |folder: &Path| folder.is_dir();
+        let done = signalled_once(&folder.0, line, begins, &[signal])?;
+        assert_eq!(done.status.code(), Some(130), "{signal}: {}", said(&done));
+        fs::remove_dir_all(folder.join("out"))?;
     }
     Ok(())
 }

@@ -306,6 +306,31 @@ fn coats_have_stresses() -> Done {
     Ok(())
 }
 
+/// Of the material Poisson's ratio alone is used, which is said if the path is of other bodies.
+#[test]
+fn other_bodies_are_warned_of() -> Done {
+    let folder = Scratch::new("stress-other")?;
+    run(&folder.0, "path --nodes 16 --material steel --record path.npz --out path -q")?;
+    let warnings = |bodies: &str| -> Result<Vec<Value>, Box<dyn Error>> {
+        let found = answer(&folder.0, &format!("stress path.npz {bodies}"))?;
+        Ok(found["warnings"].as_array().ok_or("no warnings")?.clone())
+    };
+    let is_of_others = |warning: &Value| {
+        let words = warning.as_str().unwrap_or_default();
+        words.contains("E* 230.8 GPa") && words.contains("only Poisson's ratio is used")
+    };
+    for (bodies, expected) in [
+        ("", false),
+        ("--poisson 0.4", false),
+        ("--material steel", false),
+        ("--material rubber", true),
+        ("--material steel --against glass", true),
+    ] {
+        assert_eq!(warnings(bodies)?.iter().any(is_of_others), expected, "{bodies}");
+    }
+    Ok(())
+}
+
 #[test]
 fn what_has_no_answer_is_refused() -> Done {
     let folder = Scratch::new("stress-refused")?;

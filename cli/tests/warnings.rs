@@ -145,9 +145,10 @@ fn coats_thinner_than_a_cell_are_said_everywhere() -> Done {
     // Cells of 31.25 µm.
     for (thickness, is_thin) in [("20e-6", true), ("50e-6", false)] {
         let body = format!("{BALL} --layer 3e6,0.4,{thickness} --base rigid");
-        let path = format!("path {body} --max-area-fraction 0.1 --record r.npz");
+        let path = format!("path {body} --max-area-fraction 0.1 --record {thickness}.npz");
         assert_eq!(words(folder, &path)?.contains(wide), is_thin, "{thickness}");
-        assert_eq!(words(folder, "patches r.npz")?.contains(wide), is_thin, "{thickness}");
+        let patches = format!("patches {thickness}.npz");
+        assert_eq!(words(folder, &patches)?.contains(wide), is_thin, "{thickness}");
         let load = words(folder, &format!("load {body} --load 1e-3"))?;
         assert_eq!(load.contains(wide), is_thin, "{thickness}");
     }

@@ -12,30 +12,52 @@ use crate::passages::Passage;
 
 type Quantity = fn(&CreepState) -> f64;
 
-/// Draws area, mean gap, approach and load over the logarithm of time, the state just after t = 0 being at the left
-/// end; a history with corners of its own over time itself, unless most of it is one long hold.
+/// How time is drawn: its logarithm, the state just after t = 0 being at the left end; with corners of its own a
+/// history is drawn over time itself, unless most of it is one long hold from t = 0 on.
+pub(super) struct Times {
+    start: f64,
+    last: f64,
+    is_linear: bool,
+}
+
+impl Times {
+    /// Those of states in their order; `None` if all are at one.
+    pub(super) fn of(states: &[CreepState], has_corners: bool) -> Option<Self> {
+        let (begin, last) = (states.first()?.time, states.last()?.time);
+        let mut positive = states.iter().map(|state| state.time).filter(|time| *time > 0.0);
+        let first = positive.next().unwrap_or(last);
+        // Half of the states lie behind a thousandth of the time.
+        let middle = states[states.len() / 2].time;
+        let is_late = begin < 0.0 || middle > 1e-3 * last;
+        let is_linear = first >= last || (has_corners && is_late);
+        let start = if is_linear { begin } else { first };
+        (start < last).then_some(Self { start, last, is_linear })
+    }
+
+    /// Where a time is drawn.
+    pub(super) fn place(&self, time: f64) -> f64 {
+        time.max(self.start)
+    }
+
+    /// The axis, from the beginning on.
+    pub(super) fn axis(&self, to: f64) -> Axis {
+        match self.is_linear {
+            true => Axis::linear("time", "s", self.start, to),
+            false => Axis::plain_logarithmic("time [s]", self.start, to),
+        }
+    }
+}
+
+/// Draws area, mean gap, approach and load over time.
 pub(super) fn draw(
     followed: &Followed,
     passages: &[Passage<f64>],
-    has_corners: bool,
+    times: &Times,
     name: &Path,
 ) -> Result<PathBuf, Failure> {
     let states = &followed.states;
-    let positive = || states.iter().map(|state| state.time).filter(|time| *time > 0.0);
-    let last = positive().fold(0.0, f64::max);
-    let first = positive().fold(f64::INFINITY, f64::min);
-    if first >= last {
-        return Err(Failure::request("there is nothing to draw over time: all states are at one"));
-    }
-    // Half of the states lie behind a thousandth of the time.
-    let middle = states[states.len() / 2].time;
-    let is_linear = has_corners && middle > 1e-3 * last;
-    let start = if is_linear { states[0].time.min(0.0) } else { first };
-    let shown: Vec<(f64, &CreepState)> = states
-        .iter()
-        .filter(|state| is_linear || state.time >= 0.0)
-        .map(|state| (state.time.max(start), state))
-        .collect();
+    let shown: Vec<(f64, &CreepState)> =
+        states.iter().map(|state| (times.place(state.time), state)).collect();
     let curve = |quantity: Quantity, name: &str, colour, style| {
         Series::new(name, colour, style, shown.iter().map(|(t, state)| (*t, quantity(state))))
     };
@@ -47,22 +69,15 @@ pub(super) fn draw(
     let marks = |from: f64, to: f64, named: bool| -> Vec<Series> {
         let colours = [ORANGE, GREEN, PURPLE, GREY];
         let marks = seen.iter().zip(colours).map(|((time, names), colour)| {
-            let time = time.max(start);
+            let time = times.place(*time);
             let name = if named { names.as_str() } else { "" };
             Series::new(name, colour, Style::Dashed, [(time, from), (time, to)])
         });
         marks.collect()
     };
-    let time = || {
-        if is_linear {
-            Axis::linear("time", "s", start, last)
-        } else {
-            Axis::plain_logarithmic("time [s]", first, last)
-        }
-    };
     let chart = |title: &str, y: Axis, series: Vec<Series>, legend| Chart {
         title: title.to_string(),
-        x: time(),
+        x: times.axis(times.last),
         y,
         series,
         legend,

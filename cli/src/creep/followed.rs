@@ -8,7 +8,7 @@ use asperity::leak::{Leak, Seal};
 use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
 use asperity::{BedError, ContactEvent, CreepError, Error, LoadingPath};
-use asperity_cli::number::at_least;
+use asperity_cli::number::{at_least, quantity};
 use asperity_cli::outcome::Failure;
 use asperity_cli::units;
 
@@ -82,20 +82,23 @@ impl<'a> Followed<'a> {
 
     fn along(bed: &'a Bed<'a>, task: &Task) -> Result<Self, Error> {
         let times = task.steps.times(&task.prony, task.course.corners(), task.end)?;
-        let (solution, recedes, knots) = match &task.course {
+        let (solution, recedes, knots, last) = match &task.course {
             ControlHistory::Load(load) => {
                 let creep = Creep::new(bed, &task.prony, load)?;
                 let recedes = creep.recession().map(|recession| recession.time);
-                let knots = creep.times();
-                (Solution::Creep(creep), recedes, knots)
+                let (knots, last) = (creep.times(), creep.at(task.end));
+                (Solution::Creep(creep), recedes, knots, last)
             }
             ControlHistory::Approach(approach) => {
                 let relaxation = Relaxation::new(bed, &task.prony, approach)?;
                 let (recedes, knots) = (relaxation.recession(), relaxation.times());
-                (Solution::Relaxation(relaxation), recedes, knots)
+                let last = relaxation.at(task.end);
+                (Solution::Relaxation(relaxation), recedes, knots, last)
             }
         };
-        let recedes = recedes.filter(|time| *time < task.end);
+        // Where contact falls at once, it has receded at that time already.
+        let has_receded = matches!(last, Err(Error::Creep(CreepError::ContactRecedes { .. })));
+        let recedes = recedes.filter(|time| *time < task.end || has_receded);
         if recedes.is_some() {
             return Self::stepped(bed, task, &times, (recedes, knots));
         }
@@ -148,31 +151,40 @@ impl<'a> Followed<'a> {
     }
 
     /// `Ok` if the path was long enough.
-    pub(super) fn whole(&self, task: &Task, record: &Path) -> Result<(), Failure> {
+    pub(super) fn whole(&self, bed: &Bed, task: &Task, record: &Path) -> Result<(), Failure> {
         let Some(until) = self.enough_until else {
             return Ok(());
         };
+        let reached = match self.states.is_empty() {
+            true => {
+                "the path ends below what this history needs, from its beginning on".to_string()
+            }
+            false => format!(
+                "the path is enough until t = {}, and not to {}",
+                units::time(until),
+                units::time(task.end)
+            ),
+        };
+        let failure = Failure::request(reached);
         let file = shell::quoted(record.as_os_str());
         let further = match (&self.solution, &task.course) {
             (Solution::Creep(creep), _) => {
                 format!("--max-load {}", at_least(creep.effective_load(task.end), 5))
             }
             (_, ControlHistory::Approach(approach)) => {
+                if let Some(closest) = closest(bed) {
+                    return Err(failure.with_advice(&format!(
+                        "mean planes come no closer than in full contact, where they are at an approach of {}",
+                        quantity(closest, "m", 5)
+                    )));
+                }
                 let values = approach.corners().iter().map(|corner| corner.1);
                 format!("--max-approach {}", at_least(values.fold(0.0, f64::max), 5))
             }
             // To full contact, behind which all is linear.
             (_, ControlHistory::Load(_)) => "--max-area-fraction 1".to_string(),
         };
-        let reached = match until {
-            0.0 => "the path ends below what this history needs, from its beginning on".to_string(),
-            until => format!(
-                "the path is enough until t = {}, and not to {}",
-                units::time(until),
-                units::time(task.end)
-            ),
-        };
-        Err(Failure::request(reached).with_advice(&format!(
+        Err(failure.with_advice(&format!(
             "`asperity path --resume {file} --record {file} {further}` takes it further"
         )))
     }
@@ -243,6 +255,13 @@ impl<'a> Followed<'a> {
         let pressure = pressure.pressure(bed, &mut path)?;
         Ok(vec![("pressure", pressure), ("gap", gap)])
     }
+}
+
+/// The approach of the mean planes in full contact, if the path is there.
+fn closest(bed: &Bed) -> Option<f64> {
+    let last = bed.history().states().last()?.contact;
+    let is_closest = last.contact_stiffness.is_none() && last.interfacial_stiffness?.is_infinite();
+    is_closest.then_some(last.approach)
 }
 
 /// The states up to where the path ends; when that is, if the error says so.

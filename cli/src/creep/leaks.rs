@@ -17,6 +17,7 @@ use asperity_cli::outcome::{self, Failure};
 use asperity_cli::{say, units};
 use serde_json::{Value, json};
 
+use super::charts::Times;
 use super::followed::Followed;
 use crate::advice;
 use crate::passages::Passage;
@@ -109,19 +110,20 @@ impl Leaks {
         outcome::write(&directory.join("leak_over_time.csv"), lines)
     }
 
-    /// The leak over the logarithm of time, up to where nothing leaks, and when the last channel closes; `None` without
-    /// two times to draw.
+    /// The leak over time, up to where nothing leaks, and when the last channel closes; `None` if nothing leaks at two
+    /// times.
     pub(super) fn draw(
         &self,
         passages: &[Passage<f64>],
+        times: &Times,
         directory: &Path,
     ) -> Option<Result<PathBuf, Failure>> {
         let seals = if self.seal.along() == Along::X { "seals_x" } else { "seals_y" };
         let closing = passages.iter().find(|passage| passage.key == seals);
-        let closing = closing.and_then(|passage| passage.at).filter(|time| *time > 0.0);
-        let points = self.leaks.iter().map(|(state, leak_rate)| (state.time, *leak_rate));
-        let points: Vec<(f64, f64)> =
-            points.filter(|(time, leak)| *time > 0.0 && *leak > 0.0).collect();
+        let closing = closing.and_then(|passage| passage.at).map(|time| times.place(time));
+        let points =
+            self.leaks.iter().map(|(state, leak_rate)| (times.place(state.time), *leak_rate));
+        let points: Vec<(f64, f64)> = points.filter(|(_, leak)| *leak > 0.0).collect();
         let (from, to) = (points.first()?.0, points.last()?.0);
         if from >= to {
             return None;
@@ -135,7 +137,7 @@ impl Leaks {
         let to = closing.map_or(to, |time| time.max(to));
         let chart = Chart {
             title: "leak rate".to_string(),
-            x: Axis::plain_logarithmic("time [s]", from, to),
+            x: times.axis(to),
             y: Axis::logarithmic("leak rate", "m³/s", least, most).with_room(0.04, 0.06),
             series: mark.into_iter().chain([Series::new("", BLUE, Style::Line, points)]).collect(),
             legend: Corner::BottomLeft,

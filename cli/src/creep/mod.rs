@@ -22,6 +22,7 @@ use asperity_cli::{answer, panel, speech};
 
 use crate::earlier::{self, Earlier};
 use crate::path::fields;
+use charts::Times;
 use course::Task;
 use cycles::Sweep;
 use followed::Followed;
@@ -47,7 +48,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let passages = followed.passages(&record, options.connectivity()).map_err(failed)?;
     let sweep = task.cycles.as_ref().map(|cycles| Sweep::new(&record, &task, cycles));
     if followed.states.is_empty() {
-        return followed.whole(&task, &options.record);
+        return followed.whole(&bed, &task, &options.record);
     }
     let leaks = match &options.fluid.0 {
         Some(fluid) => Some(Leaks::new(&followed, &record, fluid.seal()?)?),
@@ -63,21 +64,25 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     leaks.iter().for_each(Leaks::print);
     warning.iter().for_each(speech::warn);
     let Some(directory) = directory else {
-        return followed.whole(&task, &options.record);
+        return followed.whole(&bed, &task, &options.record);
     };
     panel::register_font()?;
     outcome::create_folder(directory)?;
     let earlier = Earlier::of(&earlier::CREEP, Some(directory), None);
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
-    let has_corners = options.history.is_some();
-    outcome.written(charts::draw(&followed, &passages, has_corners, &directory.join("creep.png")));
+    let times = Times::of(&followed.states, options.history.is_some());
+    outcome.written(match &times {
+        Some(times) => charts::draw(&followed, &passages, times, &directory.join("creep.png")),
+        None => Err(Failure::request("there is nothing to draw over time: all states are at one")),
+    });
     if let Some(drawn) = touch_times::draw(&record, &followed, directory) {
         outcome.written(drawn);
     }
     if let Some(leaks) = &leaks {
         outcome.written(leaks.write(directory));
-        leaks.draw(&passages, directory).into_iter().for_each(|drawn| outcome.written(drawn));
+        let drawn = times.and_then(|times| leaks.draw(&passages, &times, directory));
+        drawn.into_iter().for_each(|drawn| outcome.written(drawn));
     }
     // Elastic bodies have no cycles.
     if let Some(Ok(sweep)) = &sweep
@@ -95,6 +100,6 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Err(failure) => outcome.note(Err(failure)),
         }
     }
-    outcome.note(followed.whole(&task, &options.record));
+    outcome.note(followed.whole(&bed, &task, &options.record));
     earlier.finish(outcome)
 }

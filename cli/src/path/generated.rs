@@ -56,7 +56,7 @@ impl Generated {
         let resolved = (CELLS_OF_SHORTEST_WAVE * cell).max(least).min(rolloff);
         let shortest = roughness.short_cutoff.unwrap_or(resolved);
         let hurst = roughness.hurst.unwrap_or(paper.hurst());
-        let amplitude = roughness.amplitude(paper.amplitude(), stretch);
+        let amplitude = roughness.amplitude(paper.amplitude());
         let spectrum = SelfAffine::new(hurst, rolloff, shortest, amplitude, seed);
         let spectrum = spectrum.map_err(failed)?;
         Ok(Self { spectrum, grid, stretch, is_example: roughness.is_example() })
@@ -76,9 +76,23 @@ impl Generated {
             "rolloff_wavelength": self.spectrum.rolloff_wavelength(),
             "short_cutoff_wavelength": self.spectrum.short_cutoff_wavelength(),
             "rms_height": rms_height,
-            "rms_gradient_before_stretch": rms_gradient,
+            "rms_gradient": rms_gradient,
             "anisotropy": self.stretch,
         })
+    }
+
+    /// The surface, from that on the squeezed grid.
+    fn stretched(&self, isotropic: Topography) -> Result<Topography, SurfaceError> {
+        let heights = isotropic.map().matrix();
+        let surface = Topography::new(self.grid, heights.clone())?;
+        match self.spectrum.amplitude() {
+            // Less steep along x now, by how much depends on the waves that there are.
+            Amplitude::RmsGradient(gradient) if self.stretch != 1.0 => {
+                let factor = gradient / surface.rms_gradient_spectral();
+                Topography::new(self.grid, heights * factor)
+            }
+            _ => Ok(surface),
+        }
     }
 
     /// In words.
@@ -111,8 +125,7 @@ pub(super) fn generate(options: &Options) -> Result<Made, Failure> {
     LoadingSolver::check_room(&grid, options.boundary(), options.memory_budget).map_err(failed)?;
     let made = squeezed(&grid, generated.stretch).and_then(|squeezed| {
         let isotropic = Topography::sample(&generated.spectrum, squeezed)?;
-        let stretched = Topography::new(grid, isotropic.map().matrix().clone())?;
-        Ok((stretched, generated.name()?))
+        Ok((generated.stretched(isotropic)?, generated.name()?))
     });
     let (heights, name) = made.map_err(|error: SurfaceError| failed(error.into()))?;
     Ok((heights, name, generated.source()))

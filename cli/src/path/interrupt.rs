@@ -26,7 +26,7 @@ impl Interrupt {
         let ends = Arc::new(AtomicBool::new(true));
         for signal in [SIGINT, SIGTERM] {
             // In this order: the flag that the first signal sets is what the second one finds.
-            flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&ends))
+            flag::register_conditional_shutdown(signal, EXIT_CODE.into(), Arc::clone(&ends))
                 .and_then(|_| flag::register(signal, Arc::clone(&ends)))
                 .map_err(|error| Failure::new("cannot listen to Ctrl-C", error))?;
         }

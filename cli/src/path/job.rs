@@ -37,7 +37,7 @@ use asperity_cli::outcome::{Failure, is_same};
 /// Contact area over nominal area at which a path ends if nobody says where.
 const AREA_FRACTION: f64 = 0.1;
 
-/// How far two surfaces may be apart that are one, relative to their sides and heights.
+/// How far two surfaces and moduli may be apart that are one, relative to sides, heights and moduli.
 const SAME: f64 = 1e-9;
 
 /// A surface on its grid and what is asked of it.
@@ -82,8 +82,9 @@ impl Job {
         if options.surface.is_some() {
             Reading::check_row(&surface, options.boundary())?;
         }
-        check_kept(options.record.as_deref(), &surface)?;
         let hardness = hardness(options, &grid)?;
+        let contact = (&bodies, options.periodic, hardness.as_ref());
+        check_kept(options.record.as_deref(), &surface, contact)?;
         Ok(Self {
             name,
             hardness_in_words: options
@@ -140,7 +141,8 @@ impl Job {
             (None, Some(_)) => None,
             (None, None) => Some(file.to_path_buf()),
         };
-        check_kept(kept.as_deref(), &surface)?;
+        let hardness = record.hardness_map().map_err(failed)?;
+        check_kept(kept.as_deref(), &surface, (&bodies, periodic, hardness.as_ref()))?;
         if let (Some(_), Some(last)) = (passed, record.states().last()) {
             note!(
                 "note: {} continues to {}; the requested target lies before that and is read from it",
@@ -152,7 +154,6 @@ impl Job {
             "record": file.display().to_string(),
             "heights_md5": fingerprint(&surface),
         });
-        let hardness = record.hardness_map().map_err(failed)?;
         let greatest = hardness.as_ref().map(DMatrix::max);
         let parts = Parts {
             bodies: &bodies,
@@ -199,7 +200,7 @@ impl Job {
             _ => &[],
         };
         let targets = options.targets(surface.grid(), own);
-        check_kept(options.record.as_deref(), &surface)?;
+        check_kept(options.record.as_deref(), &surface, (&bodies, periodic, None))?;
         let source = json!({
             "record": file.display().to_string(),
             "heights_md5": fingerprint(&surface),
@@ -253,14 +254,15 @@ impl Job {
     }
 
     /// Where the record of a path that is interrupted goes: into its folder if nowhere else, beside records of other
-    /// surfaces.
+    /// surfaces and bodies.
     pub(super) fn record_if_interrupted(&self, folder: &Path) -> PathBuf {
         if let Some(record) = &self.record {
             return record.clone();
         }
         let mut place = folder.join("interrupted.npz");
         let mut number = 1;
-        while check_kept(Some(&place), &self.surface).is_err() {
+        let contact = (&self.bodies, self.periodic, self.hardness.as_ref());
+        while check_kept(Some(&place), &self.surface, contact).is_err() {
             number += 1;
             place = folder.join(format!("interrupted_{number}.npz"));
         }
@@ -564,13 +566,23 @@ fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {
     options.targets(grid, &[ContactTarget::AreaFraction(AREA_FRACTION)])
 }
 
-/// `Ok` unless a file where a record goes has the path of another surface: the work of hours may be in it.
-fn check_kept(file: Option<&Path>, surface: &Topography) -> Result<(), Failure> {
+/// `Ok` unless a file where a record goes has the path of another surface, of other bodies, half-space or hardness: the
+/// work of hours may be in it.
+fn check_kept(
+    file: Option<&Path>,
+    surface: &Topography,
+    (bodies, periodic, hardness): (&Bodies, Option<Periodic>, Option<&DMatrix<f64>>),
+) -> Result<(), Failure> {
     let Some(file) = file.filter(|file| file.is_file()) else { return Ok(()) };
-    let (grid, heights) = match LoadingRecord::read_npz(file) {
-        Ok(record) => (record.grid(), record.heights().clone()),
+    let (grid, heights, origin, other_hardness) = match LoadingRecord::read_npz(file) {
+        Ok(record) => {
+            let hardness = record.hardness_map();
+            (record.grid(), record.heights().clone(), record.kernel().origin.clone(), hardness)
+        }
         Err(_) => match AdhesiveRecord::read_npz(file) {
-            Ok(record) => (record.grid(), record.heights().clone()),
+            Ok(record) => {
+                (record.grid(), record.heights().clone(), record.kernel().origin.clone(), Ok(None))
+            }
             // An empty file is a place that somebody has made for the record.
             Err(_) if file.metadata().is_ok_and(|file| file.len() == 0) => return Ok(()),
             Err(_) => {
@@ -588,15 +600,23 @@ fn check_kept(file: Option<&Path>, surface: &Topography) -> Result<(), Failure> 
     let rounding = SAME * surface.map().peak_to_valley() + last_bits;
     let is_near = |(a, b): (&f64, &f64)| (a - b - shift).abs() <= rounding;
     let [(x, y), (other_x, other_y)] = [surface.grid(), &grid].map(Grid::sides);
-    let is_same = surface.grid().shape() == grid.shape()
+    let is_one_surface = surface.grid().shape() == grid.shape()
         && (x - other_x).abs() <= SAME * x
         && (y - other_y).abs() <= SAME * y
         && surface.heights().iter().zip(heights.matrix()).all(is_near);
-    if is_same {
-        return Ok(());
-    }
+    let other = Bodies::of_kernel(&origin, &[]).ok();
+    let are_same = |(_, other): &(Option<Periodic>, Bodies)| {
+        (bodies.e_star / other.e_star - 1.0).abs() <= SAME && bodies.layered == other.layered
+    };
+    let what = match () {
+        () if !is_one_surface => "another surface",
+        () if !other.as_ref().is_some_and(are_same) => "other bodies",
+        () if other.is_some_and(|other| other.0 != periodic) => "another half-space",
+        () if !other_hardness.is_ok_and(|other| other.as_ref() == hardness) => "another hardness",
+        () => return Ok(()),
+    };
     Err(Failure::request(format!(
-        "{} is the record of another surface, which would be lost: name another file with --record, or remove it",
+        "{} is the record of {what}, which would be lost: name another file with --record, or remove it",
         file.display()
     )))
 }

@@ -12,7 +12,7 @@ use asperity_cli::units::{self, Units};
 use clap::{Args, ValueEnum};
 
 use crate::conduction::{Conduct, Named};
-use crate::values::{LENGTH, SHARE, positive};
+use crate::values::{LENGTH, SHARE, part, positive};
 
 /// The bodies of a joint.
 pub(super) struct Pair<'a> {
@@ -41,7 +41,7 @@ pub(super) struct Joint {
     fe_table: Option<Program>,
 
     /// Greatest relative error of linear interpolation in that table
-    #[arg(long, value_name = "E", value_parser = positive, default_value_t = 0.01, requires = "fe_table")]
+    #[arg(long, value_name = "E", value_parser = part, default_value_t = 0.01, requires = "fe_table")]
     fe_error: f64,
 
     /// Coefficient of friction for that table

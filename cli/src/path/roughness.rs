@@ -3,7 +3,7 @@
 use asperity::surface::Amplitude;
 use clap::Args;
 
-use crate::values::{LENGTH, fraction, positive};
+use crate::values::{LENGTH, hurst, positive};
 
 /// Its roughness: that of Zhang et al. (2020), Table 1, but for what is given.
 #[derive(Debug, Clone, Args)]
@@ -26,7 +26,7 @@ pub(super) struct Roughness {
     rms_gradient: Option<f64>,
 
     /// Hurst exponent [default: 0.8]
-    #[arg(long, value_name = "H", value_parser = fraction, conflicts_with = "surface")]
+    #[arg(long, value_name = "H", value_parser = hurst, conflicts_with = "surface")]
     pub(super) hurst: Option<f64>,
 
     /// Roll-off: the wavelength above which the spectrum is flat [default: 2.5 mm]
@@ -54,14 +54,11 @@ impl Roughness {
         lengths.or(self.rms_gradient).or(self.hurst).or(self.anisotropy).is_none()
     }
 
-    /// Height or gradient; of waves that are stretched, so that the gradient is that of the surface then.
-    pub(super) fn amplitude(&self, default: Amplitude, stretch: f64) -> Amplitude {
+    /// Height or gradient.
+    pub(super) fn amplitude(&self, default: Amplitude) -> Amplitude {
         match (self.sq, self.rms_gradient) {
             (Some(height), _) => Amplitude::RmsHeight(height),
-            // Half of the mean square is along x, and falls with the square of the stretch.
-            (None, Some(gradient)) => {
-                Amplitude::RmsGradient(gradient / (0.5 + 0.5 / (stretch * stretch)).sqrt())
-            }
+            (None, Some(gradient)) => Amplitude::RmsGradient(gradient),
             (None, None) => default,
         }
     }

@@ -5,7 +5,6 @@ use asperity::kernel::Theory;
 use asperity::record::LoadingRecord;
 use asperity::slip::{Friction, PartialSlip, SlipCycle, SlipState};
 use asperity::{Boundary, Error, SlipError};
-use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
 use super::Options;
@@ -16,8 +15,6 @@ const POINTS: usize = 200;
 /// Amplitudes of cycles in a factor of ten, and how many such factors below the limit of friction there are.
 const PER_DECADE: usize = 16;
 const DECADES: usize = 4;
-/// How far E* of the bodies may be from that of the path: materials are given with three digits.
-const SAME_MODULUS: f64 = 1e-3;
 
 /// A joint, with all its curves.
 pub(super) struct Joint<'a> {
@@ -60,7 +57,8 @@ impl<'a> Joint<'a> {
         let loading = loading.collect::<Result<_, _>>().map_err(failed)?;
         let cycles = cycles(&slip).map_err(failed)?;
         let mut warnings = warnings(&slip, &cycle);
-        warnings.extend(bodies.as_ref().and_then(|bodies| of_modulus(record, bodies)));
+        let used = "their ratio of compliances";
+        warnings.extend(bodies.as_ref().and_then(|bodies| bodies.warning_of_path(record, used)));
         let bodies = match bodies {
             Some(bodies) => bodies.to_string(),
             None => "ratio of compliances as given".to_string(),
@@ -156,17 +154,4 @@ fn warnings(slip: &PartialSlip, cycle: &SlipCycle) -> Vec<String> {
         ));
     }
     warnings
-}
-
-/// That the path is of other bodies.
-fn of_modulus(record: &LoadingRecord, bodies: &Bodies) -> Option<String> {
-    let e_star = record.kernel().origin.composite_modulus()?;
-    let is_same = (bodies.e_star / e_star - 1.0).abs() < SAME_MODULUS;
-    (!is_same).then(|| {
-        format!(
-            "the path has been computed with E* {}, and these bodies have {}: only their ratio of compliances is used",
-            quantity(e_star, "Pa", 4),
-            quantity(bodies.e_star, "Pa", 4)
-        )
-    })
 }

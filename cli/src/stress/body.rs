@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use super::Options;
 use super::progress::Progress;
 use crate::at::state_at_load;
+use crate::elasticity::Bodies;
 
 /// A state of the record.
 pub(super) struct Moment<'a> {
@@ -152,6 +153,17 @@ impl<'a> Moment<'a> {
 /// Records of other bodies have one modulus; those on kernels of somebody's own are not read here.
 fn is_of_layers(record: &LoadingRecord) -> bool {
     record.kernel().origin.composite_modulus().is_none()
+}
+
+/// That the path is of other bodies than those given, of which one may be left out if the record knows both.
+pub(super) fn warning_of_path(
+    record: &LoadingRecord,
+    options: &Options,
+) -> Result<Option<String>, Failure> {
+    let Some(first) = options.material else { return Ok(None) };
+    let bodies = Bodies::between(first, options.against)?;
+    let is_known = options.against.is_none() && record.bodies().contains(&(first.e, first.nu));
+    Ok(bodies.warning_of_path(record, "Poisson's ratio").filter(|_| !is_known))
 }
 
 /// Poisson's ratios of the body and of the other one, if that is not rigid; layers have their own.

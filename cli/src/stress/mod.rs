@@ -108,7 +108,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
     let mut moment = Moment::new(&record, options)?;
     let bodies = moment.bodies(options)?;
-    let warnings = words::warnings(&moment, &bodies, options.depth.is_empty());
+    let mut warnings = words::warnings(&moment, &bodies, options.depth.is_empty());
+    warnings.extend(body::warning_of_path(&record, options)?);
     if options.json {
         answer!("{}", words::object(&moment, &bodies, &warnings));
     }

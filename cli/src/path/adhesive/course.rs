@@ -128,6 +128,15 @@ impl Begun {
         // A record that was unloading goes on with that.
         let is_back = |state: &AdhesiveState| state.direction == Direction::Unloading;
         let is_turned = options.unload && begun.last().is_some_and(is_back);
+        // With all nodes in contact it had come to the end of what there is.
+        let is_full =
+            branch.last().is_some_and(|state| state.contact.contact_nodes == grid.nodes());
+        if let (true, false, None, [target, ..]) = (is_turned, is_full, ended_by, job.targets()) {
+            return Err(Failure::request(format!(
+                "the path of the record was on its way back and has not come to {}: without --unload it goes there",
+                named(target)
+            )));
+        }
         Ok(Self { reached, missed, ended_by: ended_by.or(is_turned.then_some(OF_RECORD)) })
     }
 }
