@@ -15,8 +15,8 @@ import asperity as asp
 
 FILE = Path(__file__).resolve().parents[2] / "tests" / "data" / "selfaffine_128.npy"
 
-# A .npy file has neither size nor unit; those of instruments do. Holes are filled, and a tilt is taken off.
-surface = asp.read(FILE, size=(1e-2, 1e-2), height_unit="m").fill_missing().level("plane")
+# A .npy file has neither size nor unit; those of instruments do. A tilt is taken off, and holes are filled.
+surface = asp.read(FILE, size=(1e-2, 1e-2), height_unit="m").level("plane").fill_missing()
 print(f"{surface}, Sq {surface.sq * 1e6:.1f} um, rms gradient {surface.rms_gradient:.3f}")
 
 steel = asp.HalfSpace(asp.composite_modulus("steel", "steel"), boundary="free")

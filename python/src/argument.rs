@@ -1,7 +1,9 @@
 //! Arguments of several types.
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
+
+use crate::errors::Failure;
 
 /// Reads an argument as the first of some types that it is of, the variants of an enum, and says what it should have
 /// been if it is of none.
@@ -27,4 +29,25 @@ pub(crate) fn not_one(given: &Bound<'_, PyAny>, expected: &str) -> PyErr {
         Ok(given) => PyTypeError::new_err(format!("{expected} was expected, but this is {given}")),
         Err(error) => error,
     }
+}
+
+/// Reads whole numbers, one or several, and says which there are where one is below 0 or too large.
+pub(crate) fn whole<'a, 'py, T>(given: &'a Bound<'py, PyAny>) -> PyResult<T>
+where
+    T: FromPyObject<'a, 'py, Error = PyErr>,
+{
+    given.extract().map_err(|error: PyErr| {
+        if !error.is_instance_of::<PyOverflowError>(given.py()) {
+            return error;
+        }
+        let most = u64::MAX;
+        given.repr().map_or_else(
+            |error| error,
+            |given| {
+                let message =
+                    format!("whole numbers go from 0 to {most} here, but this is {given}");
+                Failure::arguments(message).into()
+            },
+        )
+    })
 }

@@ -9,11 +9,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use parking_lot::{Mutex as FairMutex, MutexGuard as FairGuard};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::argument::whole;
 use crate::errors::{Failure, Fallible};
 
 /// How long signals wait while something is computed elsewhere.
@@ -70,7 +72,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
 /// The same with what is locked meanwhile, to the end of the work and not only of the wait.
 pub(crate) fn interruptible_with<L: Send + 'static, T: Send + 'static>(
     py: Python<'_>,
-    lock: &Arc<Mutex<L>>,
+    lock: &Arc<FairMutex<L>>,
     work: impl FnOnce(&mut L) -> T + Send + 'static,
 ) -> Fallible<T> {
     let (send, receive) = mpsc::channel();
@@ -78,7 +80,7 @@ pub(crate) fn interruptible_with<L: Send + 'static, T: Send + 'static>(
     // Who holds the lock may wait for all threads of the pool: none of them waits for the lock.
     let begun = thread::Builder::new().spawn(move || {
         let done = catch_unwind(AssertUnwindSafe(|| {
-            let mut locked = lock.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut locked = lock.lock();
             let locked = &mut *locked;
             pool.install(|| work(locked))
         }));
@@ -102,6 +104,22 @@ pub(crate) fn cancellable<T: Send + 'static>(
     let is_left = Arc::new(AtomicBool::new(false));
     let told = Arc::clone(&is_left);
     interruptible(py, move || work(&told)).inspect_err(|_| is_left.store(true, Ordering::Relaxed))
+}
+
+/// Waits for a lock without the interpreter, and looks at signals in between.
+pub(crate) fn locked<'a, T: Send>(
+    py: Python<'_>,
+    lock: &'a FairMutex<T>,
+) -> Fallible<FairGuard<'a, T>> {
+    loop {
+        if let Some(guard) = lock.try_lock() {
+            return Ok(guard);
+        }
+        if let Some(guard) = py.detach(|| lock.try_lock_for(PAUSE)) {
+            return Ok(guard);
+        }
+        py.check_signals()?;
+    }
 }
 
 /// What a thread sends.
@@ -164,7 +182,7 @@ fn threads(py: Python<'_>) -> Fallible<usize> {
 /// count : int
 ///     Number of threads, at least 1. Results are the same bit for bit with any number.
 #[pyfunction]
-fn set_threads(py: Python<'_>, count: usize) -> Fallible<()> {
+fn set_threads(py: Python<'_>, #[pyo3(from_py_with = whole)] count: usize) -> Fallible<()> {
     if !(1..=4096).contains(&count) {
         return Err(asperity::Error::OutOfRange {
             quantity: "number of threads",

@@ -82,7 +82,7 @@ impl From<Failure> for PyErr {
             Failure::Python(error) => return error,
             Failure::Engine(error) => {
                 let (class, kind, numbers) = describe(&error);
-                (class, kind, in_python(&error.to_string()), numbers)
+                (class, kind, message(&error), numbers)
             }
             Failure::Array { message, numbers } => ("ArrayError", "Array", message, numbers),
             Failure::Arguments(message) => ("AsperityError", "Arguments", message, Vec::new()),
@@ -121,6 +121,18 @@ fn raise(
     }
     let class = py.import("asperity.errors")?.getattr(class)?;
     Ok(PyErr::from_value(class.call((message,), Some(&attributes))?))
+}
+
+/// What an error says.
+fn message(error: &Error) -> String {
+    match *error {
+        // As arrays are.
+        Error::GridMismatch { expected, found } => format!(
+            "expected {} rows x {} columns, but found {} x {}",
+            expected.1, expected.0, found.1, found.0
+        ),
+        _ => in_python(&error.to_string()),
+    }
 }
 
 /// Words of the library in those of this package.
@@ -214,6 +226,7 @@ fn describe(error: &Error) -> Described {
             (VALUE, "FieldNotFinite", numbers![field, ix, iy, value])
         }
         Error::GridMismatch { expected, found } => {
+            let [expected, found] = [expected, found].map(|(columns, rows)| (*rows, *columns));
             (VALUE, "GridMismatch", numbers![expected, found])
         }
         Error::LengthMismatch { expected, found } => {

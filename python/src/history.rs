@@ -88,19 +88,27 @@ pub(crate) fn check_on_path(history: &loading::History, state: &LoadingState) ->
     let (Some(event), Some(last)) = (event, last) else {
         return Err(Error::StateNotReached { step, present });
     };
-    let next = events.get(after).unwrap_or(last);
+    let (load, approach) = (state.contact.load, state.contact.approach);
+    let load_of: fn(&LoadingState) -> f64 = |state| state.contact.load;
+    let approach_of: fn(&LoadingState) -> f64 = |state| state.contact.approach;
+    let both = [("load", load_of), ("approach", approach_of)];
+    // Behind full contact the history is read on and on.
+    let read_on = || {
+        let is_same = |found: &LoadingState| {
+            both.iter().all(|(_, of)| (of(found) - of(state)).abs() <= SAME * of(state).abs())
+        };
+        [history.at_load(load), history.at_approach(approach)].into_iter().flatten().find(is_same)
+    };
+    let next = events.get(after).copied().or_else(read_on).unwrap_or(*last);
     let off = |quantity, value| {
-        let (load, approach) = (state.contact.load, state.contact.approach);
         let expected = "as at the events before and behind it";
         Err(Error::NotOnPath { step, load, approach, quantity, value, expected })
     };
     if state.contact.contact_nodes != event.contact.contact_nodes {
         return off("number of nodes in contact", event.contact.contact_nodes as f64);
     }
-    let load: fn(&LoadingState) -> f64 = |state| state.contact.load;
-    let approach: fn(&LoadingState) -> f64 = |state| state.contact.approach;
-    for (quantity, of) in [("load", load), ("approach", approach)] {
-        let (from, to) = (of(event), of(next));
+    for (quantity, of) in both {
+        let (from, to) = (of(event), of(&next));
         let rounding = SAME * (from.abs() + to.abs());
         if of(state) < from - rounding || of(state) > to + rounding {
             return off(quantity, from);
@@ -277,7 +285,7 @@ impl History {
                 after.step - 1
             )));
         }
-        Ok(State::new(self.history.at(targets.only(&self.setting.grid)?)?))
+        Ok(State::new(self.history.at(targets.only()?)?))
     }
 
     /// Number of events up to each state, 1 for first touch.

@@ -21,7 +21,7 @@ impl Increments {
     /// Of a path with its states so far, or of a history.
     pub(crate) fn of(object: &Bound<'_, PyAny>) -> Fallible<Self> {
         if let Ok(path) = object.cast::<LoadingPath>() {
-            let history = path.get().history_now(object.py()).history;
+            let history = path.get().history_now(object.py())?.history;
             return Ok(Self { history, path: Some(path.clone().unbind()) });
         }
         let Ok(history) = object.cast::<History>() else {
@@ -71,11 +71,15 @@ impl Increments {
     }
 
     /// Both bodies of the path, if it knows them.
-    pub(crate) fn bodies(&self, py: Python<'_>) -> Option<(Body, Body)> {
-        let known = self.path.as_ref()?.bind(py).get().elastic_bodies(py);
-        let (first, rest) = known.split_first()?;
-        let second = rest.first().map_or(Body::Named("rigid".to_string()), |b| Body::Numbers(*b));
-        Some((Body::Numbers(*first), second))
+    pub(crate) fn bodies(&self, py: Python<'_>) -> Fallible<Option<(Body, Body)>> {
+        let known = match &self.path {
+            Some(path) => path.bind(py).get().elastic_bodies(py)?,
+            None => Vec::new(),
+        };
+        let rigid = || Body::Named("rigid".to_string());
+        Ok(known.split_first().map(|(first, rest)| {
+            (Body::Numbers(*first), rest.first().map_or_else(rigid, |b| Body::Numbers(*b)))
+        }))
     }
 
     /// What the engine of the path computes.

@@ -189,9 +189,11 @@ fn interface_table(
         let made = conduction(py, &increments, resistivity, carrier, e_star, gap)?;
         builder = builder.conduction(made);
     }
-    let known =
-        || increments.bodies(py).filter(|_| friction.is_some() && compliance_ratio.is_none());
-    match (friction, bodies.or_else(known), compliance_ratio) {
+    let bodies = match (friction, bodies, compliance_ratio) {
+        (Some(_), None, None) => increments.bodies(py)?,
+        (_, bodies, _) => bodies,
+    };
+    match (friction, bodies, compliance_ratio) {
         (Some(friction), None, Some(ratio)) => builder = builder.friction(friction, ratio),
         (Some(friction), Some(bodies), None) => {
             let friction = materials::friction(friction, &bodies)?;

@@ -7,6 +7,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::whole;
 use crate::arrays::{Found, Kind, Lengths, column, rows};
 use crate::choice::{self, Repeats};
 use crate::compute::detached;
@@ -182,7 +183,7 @@ impl Seal {
         &self,
         py: Python<'py>,
         path: ElasticPath<'py>,
-        states: usize,
+        #[pyo3(from_py_with = whole)] states: usize,
         check: bool,
     ) -> Fallible<Bound<'py, PyAny>> {
         let seal = self.seal;

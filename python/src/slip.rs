@@ -82,8 +82,10 @@ fn shear(
 ) -> Fallible<PartialSlip> {
     let increments = Increments::of(path)?;
     increments.history.layering().check(Theory::Slip)?;
-    let known = || increments.bodies(py).filter(|_| compliance_ratio.is_none());
-    let bodies = bodies.or_else(known);
+    let bodies = match (bodies, compliance_ratio) {
+        (None, None) => increments.bodies(py)?,
+        (bodies, _) => bodies,
+    };
     let law = match (&bodies, compliance_ratio) {
         (Some(bodies), None) => materials::friction(friction, bodies)?,
         (None, Some(ratio)) => Friction::new(friction, ratio)?,

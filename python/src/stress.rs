@@ -11,6 +11,7 @@ use asperity::stress::{FirstYield, Greatest, Measure, Subsurface};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::whole;
 use crate::arrays::{Found, Kind, Lengths, column, rows};
 use crate::choice::Repeats;
 use crate::compute::{cancellable, detached};
@@ -198,8 +199,10 @@ fn of_path(
     poissons_ratio: Option<f64>,
     (friction, angle): (f64, f64),
 ) -> Fallible<Subsurface> {
-    let known = || path.elastic_bodies(py).first().map(|(_, ratio)| *ratio);
-    let ratio = poissons_ratio.or_else(known);
+    let ratio = match poissons_ratio {
+        Some(ratio) => Some(ratio),
+        None => path.elastic_bodies(py)?.first().map(|(_, ratio)| *ratio),
+    };
     let of_record = move |record: &LoadingRecord| match (ratio, &record.kernel().origin) {
         // Layers have ratios of their own.
         (
@@ -314,7 +317,13 @@ impl Stress {
     ///     Distance of depths [m].
     /// count : int
     ///     Number of depths, the first on the surface.
-    fn write_volume(&self, py: Python<'_>, file: PathBuf, step: f64, count: usize) -> Fallible<()> {
+    fn write_volume(
+        &self,
+        py: Python<'_>,
+        file: PathBuf,
+        step: f64,
+        #[pyo3(from_py_with = whole)] count: usize,
+    ) -> Fallible<()> {
         let write = || self.below.write_volume(&self.pressure, (step, count), &file, |_| ());
         Ok(detached(py, write)??)
     }

@@ -1,6 +1,6 @@
 //! Where to look, or to end: a load, a mean pressure, an approach, an area or a mean gap.
 
-use asperity::{ContactTarget, Grid};
+use asperity::ContactTarget;
 
 use crate::errors::{Failure, Fallible};
 
@@ -15,17 +15,16 @@ pub(crate) struct Targets {
 }
 
 impl Targets {
-    /// All of them, on a grid.
-    pub(crate) fn on(&self, grid: &Grid) -> Fallible<Vec<ContactTarget>> {
+    /// All of them.
+    pub(crate) fn all(&self) -> Fallible<Vec<ContactTarget>> {
         if self.load.is_some() && self.mean_pressure.is_some() {
             return Err(Failure::arguments(
                 "load and mean_pressure are the same quantity: give one of them",
             ));
         }
-        let pressed = || self.mean_pressure.map(|pressure| pressure * grid.nominal_area());
-        let load = self.load.or_else(pressed);
         let given = [
-            load.map(ContactTarget::Load),
+            self.load.map(ContactTarget::Load),
+            self.mean_pressure.map(ContactTarget::MeanPressure),
             self.approach.map(ContactTarget::Approach),
             self.mean_gap.map(ContactTarget::MeanGap),
             self.area_fraction.map(ContactTarget::AreaFraction),
@@ -34,8 +33,8 @@ impl Targets {
     }
 
     /// The only one.
-    pub(crate) fn only(&self, grid: &Grid) -> Fallible<ContactTarget> {
-        match self.on(grid)?[..] {
+    pub(crate) fn only(&self) -> Fallible<ContactTarget> {
+        match self.all()?[..] {
             [target] => Ok(target),
             _ => Err(Failure::arguments(
                 "give one of load, mean_pressure, approach, area_fraction and mean_gap",

@@ -93,6 +93,11 @@ def test_forces_and_loops(surface: asp.Surface) -> None:
     assert back[-1].load == pytest.approx(-1e-6, rel=1e-12) and back[-1].branch == "unloading"
     again = path.load_to(load=peak.load)[-1]
     assert again.contact_nodes == peak.contact_nodes and again.approach == pytest.approx(peak.approach, rel=1e-9)
+    # A mean pressure is a load over the nominal area, here too.
+    assert path.unload(mean_pressure=-1e-6 / SIDE**2)[-1].load == pytest.approx(-1e-6, rel=1e-12)
+    assert path.load_to(mean_pressure=100.0)[-1].mean_pressure == pytest.approx(100.0, rel=1e-12)
+    with pytest.raises(errors.AsperityError, match="same quantity"):
+        path.load_to(load=1.0, mean_pressure=100.0)
     off = path.unload()
     assert off.pull_off == -off.load.min() > loading.pull_off > 0
     assert off[-1].load == 0 == off[-1].contact_nodes and off.jumps > 0 and off.energy_lost > 0

@@ -131,6 +131,11 @@ def test_relaxation_at_an_approach(path: asp.LoadingPath) -> None:
     lifted = asp.creep(path, rubber, [0.0], approach=[-1e-6])
     np.testing.assert_array_equal(lifted.gap(1.0), -path.surface.z + 1e-6)
     assert lifted.at([1.0])["contact_nodes"][0] == 0
+    # The state of the path is that of first touch, through which less leaks than through the gap of the time.
+    seal, nowhere = asp.Seal(1e-3, 1e5, along="x"), np.zeros(path.shape, dtype=bool)
+    assert lifted.path_state(1.0) == path.history[0]
+    apart = seal.leak_of(lifted.gap(1.0), nowhere, path.size, periodic=path.is_periodic)
+    assert apart.leak_rate > seal.leak(path, lifted.path_state(1.0), check=False).leak_rate
 
 
 def test_unloading(path: asp.LoadingPath) -> None:
@@ -346,10 +351,10 @@ def test_what_cannot_creep(path: asp.LoadingPath) -> None:
         with pytest.raises((errors.AsperityError, TypeError)):
             asp.creep(path, rubber, hostile, load=0.5 * end)  # type: ignore[arg-type]
     for pieces in (0, -1):
-        with pytest.raises((errors.AsperityError, OverflowError)):
+        with pytest.raises(errors.AsperityError):
             held.pressure(0.0, pieces=pieces)
     for steps, halvings in ((10**8, 0), (2**63, 0), (60, 24), (60, 2**31), (-1, 0)):
-        with pytest.raises((errors.AsperityError, OverflowError)):
+        with pytest.raises(errors.AsperityError):
             held.step_times(1.0, steps=steps, halvings=halvings)
     for end_time in (np.nan, np.inf):
         with pytest.raises(errors.AsperityError):

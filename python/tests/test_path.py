@@ -195,9 +195,12 @@ def test_arguments_that_make_no_sense(rough: asp.Surface, body: asp.HalfSpace) -
         with pytest.raises(asp.AsperityError) as refused:
             asp.load_path(rough, body, **arguments)
         assert refused.value.kind == kind, arguments
-    for arguments in [{"nodes": -1}, {"load": "1"}, {"hardness": "hard"}, {"memory_budget": 1.5}, {"nonsense": 1}]:
-        with pytest.raises((TypeError, OverflowError)):
+    for arguments in [{"load": "1"}, {"hardness": "hard"}, {"memory_budget": 1.5}, {"nonsense": 1}]:
+        with pytest.raises(TypeError):
             asp.load_path(rough, body, **arguments)
+    with pytest.raises(asp.AsperityError, match="expected 64 rows x 64 columns, but found 2 x 3") as shape:
+        asp.load_path(rough, body, hardness=np.ones((2, 3)))
+    assert (shape.value.expected, shape.value.found) == ((64, 64), (2, 3))
     with pytest.raises(TypeError):
         asp.load_path(rough.z, body)
     for e_star, boundary in [(0.0, "free"), (-1.0, "love"), (float("nan"), "free"), (1e9, "periodic"), (1e9, "Free")]:
@@ -205,6 +208,52 @@ def test_arguments_that_make_no_sense(rough: asp.Surface, body: asp.HalfSpace) -
             asp.HalfSpace(e_star, boundary=boundary)
     with pytest.raises(TypeError):
         asp.HalfSpace(1e9)  # type: ignore[call-arg]
+
+
+def test_numbers_that_no_count_can_be(rough: asp.Surface, body: asp.HalfSpace) -> None:
+    for value, call in [
+        ("-1", lambda: asp.load_path(rough, body, nodes=-1)),
+        ("-2", lambda: asp.load_path(rough, body, window_size=-2)),
+        ("-3", lambda: asp.example_surface(-3)),
+        (str(2**70), lambda: asp.example_surface(16, 2**70)),
+        (r"\(-1, 48\)", lambda: rough.resample((-1, 48))),
+        ("-4", lambda: asp.solve(rough, body, load=1.0, max_iterations=-4)),
+        ("-5", lambda: asp.set_threads(-5)),
+    ]:
+        with pytest.raises(asp.AsperityError, match=f"from 0 to {2**64 - 1} here, but this is {value}(\n|$)"):
+            call()
+
+
+@pytest.mark.parametrize("body", [asp.HalfSpace(1e6, boundary="love"), asp.HalfSpace(1e6, boundary="free")])
+def test_states_behind_full_contact(body: asp.HalfSpace, tmp_path: Path) -> None:
+    """They have fields: of waves that are pressed flat, and of a flat punch, all in contact from the beginning."""
+    is_flat = not body.is_periodic
+    surface = asp.wave(1e-6, (1e-3, 1e-3), (16, 16), 1e-3)
+    if is_flat:
+        surface = asp.Surface(np.zeros((16, 16)), 1e-3)
+    path = asp.load_path(surface, body, check=False)
+    history = path.run(check=False)
+    assert path.end == "full contact" and history.contact_nodes[-1] == 256
+    load = 1e-3 if is_flat else 2.0 * history.load[-1]
+    behind = [history.at(load=load)]
+    if is_flat:
+        behind.append(history.at(approach=2.0 * behind[0].approach))
+    path.save(tmp_path / "full.npz")
+    opened = asp.open(tmp_path / "full.npz")
+    for state in behind:
+        assert path.pressure(state).mean() == pytest.approx(state.load / surface.area, rel=1e-9)
+        assert opened.pressure(state).mean() == pytest.approx(state.load / surface.area, rel=1e-7)
+        assert path.contact_map(state).all() and path.constriction("x", state) is None
+        assert np.abs(path.gap(state)).max() < 1e-15
+        assert len(asp.patches(path).at(state)) == 1
+        assert asp.Seal(1e-3, 1e5, along="x").leak(path, state, check=False).leak_rate == 0.0
+        assert asp.stress(path, 0.3, state=state).survey([1e-4]).depth.tolist() == [1e-4]
+    # Those of another body are none of this path.
+    other = asp.load_path(surface.scaled(1.5), asp.HalfSpace(2e6, boundary="free" if is_flat else "love"), check=False)
+    other.run(check=False)
+    with pytest.raises(asp.AsperityError) as foreign:
+        other.pressure(behind[0])
+    assert foreign.value.kind == "NotOnPath"
 
 
 def test_memory_has_a_limit(rough: asp.Surface, body: asp.HalfSpace) -> None:

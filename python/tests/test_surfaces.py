@@ -144,8 +144,9 @@ def test_files_are_written_and_read_again(tmp_path: Path) -> None:
     surface.save(tmp_path / "z.gsf")
     # float32.
     np.testing.assert_allclose(asp.read(tmp_path / "z.gsf").z, surface.z, rtol=1e-7)
-    with pytest.raises(FileError):
+    with pytest.raises(FileError, match="cannot be written with this extension") as unknown:
         surface.save(tmp_path / "z.tiff")
+    assert unknown.value.filename == str(tmp_path / "z.tiff")
     with pytest.raises(OSError):
         surface.save(tmp_path / "no folder" / "z.npy")
 
@@ -211,6 +212,28 @@ def test_what_looks_wrong_is_said() -> None:
     np.testing.assert_allclose(tilted.level().z, surface.level().z, atol=1e-15)
 
 
+def test_a_tilt_is_taken_off_before_holes_are_filled() -> None:
+    """The trend is that of the measured nodes, and they are as level as without holes."""
+    rows, columns = np.mgrid[0:48, 0:64]
+    tilt = 1e-6 * columns - 2e-6 * rows
+    holes = tilt.copy()
+    holes[10:30, 40:] = np.nan
+    surface = asp.Surface(holes, size=(6.4e-4, 4.8e-4))
+    assert surface.trend().slopes == pytest.approx((0.1, -0.2), rel=1e-9)
+    level = surface.level("plane")
+    np.testing.assert_array_equal(np.isnan(level.z), np.isnan(holes))
+    filled = level.fill_missing()
+    assert filled.missing == 0
+    # Rounding of a tilt of 0.1 mm.
+    assert np.abs(filled.z).max() < 1e-17
+    # Without holes it is what it was.
+    whole = asp.Surface(tilt + 1e-9 * np.sin(rows * columns), surface.size)
+    assert whole.level("quadratic").trend("quadratic").tilt < 1e-12
+    with pytest.raises(asp.AsperityError) as nothing:
+        asp.Surface(np.full((3, 4), np.nan), (1.0, 1.0)).level()
+    assert nothing.value.kind == "NothingMeasured"
+
+
 def test_preparation() -> None:
     surface = asp.example_surface(nodes=64)
     long, short = surface.low_pass(1e-3), surface.high_pass(1e-3)
@@ -238,9 +261,16 @@ def test_preparation() -> None:
     with pytest.raises(asp.AsperityError) as out:
         surface.crop(rows=(0, 65))
     assert out.value.kind == "CropOutOfGrid" and out.value.axis == "y"
+    with pytest.raises(asp.AsperityError, match=r"from 0 to 18446744073709551615 here, but this is \(-3, 5\)"):
+        surface.crop(rows=(-3, 5))
+    with pytest.raises(TypeError, match="first, behind the last"):
+        surface.crop(columns=3)  # type: ignore[arg-type]
     with pytest.raises(asp.AsperityError) as out:
         surface + fine
     assert out.value.kind == "GridMismatch"
+    # Rows and columns, as of arrays.
+    assert (out.value.expected, out.value.found) == (surface.shape, fine.shape)
+    assert "expected 64 rows x 64 columns, but found 128 x 96" in str(out.value)
 
 
 def test_pieces_without_holes() -> None:

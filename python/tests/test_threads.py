@@ -115,6 +115,46 @@ def test_ctrl_c_in_the_middle_of_a_path(long_path: asp.LoadingPath) -> None:
 
 
 @pytest.mark.skipif(not POSIX, reason="signals of POSIX")
+def test_ctrl_c_while_an_interrupted_analysis_goes_on(body: asp.HalfSpace) -> None:
+    """What asks the path for its states waits then, and Ctrl-C ends that wait too. Afterwards all is there."""
+    path = asp.load_path(asp.example_surface(nodes=160), body, nodes=1000, check=False)
+    path.run(check=False)
+    pressure = path.pressure()
+    seal = asp.Seal(1e-3, 1e5, along="x")
+    # Some seconds of work, of which the waits take a part.
+    for ask in [
+        lambda: seal.curve(path, states=400, check=False),
+        lambda: path.history,
+        lambda: repr(path),
+        path.pressure,
+    ]:
+        start = time.monotonic()
+        threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            ask()
+        assert time.monotonic() - start < 2.0
+    assert len(path.history) == 1000
+    np.testing.assert_array_equal(path.pressure(), pressure)
+
+
+@pytest.mark.skipif(not POSIX, reason="signals of POSIX")
+def test_a_handler_asks_for_the_path_that_its_thread_waits_for(long_path: asp.LoadingPath) -> None:
+    """It comes to its turn as others do."""
+    seen: list[int] = []
+    before = signal.signal(signal.SIGALRM, lambda number, frame: seen.append(len(long_path.history)))
+    running = threading.Thread(target=lambda: long_path.run(check=False))
+    try:
+        running.start()
+        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        while running.is_alive():
+            repr(long_path)
+    finally:
+        running.join()
+        signal.signal(signal.SIGALRM, before)
+    assert len(seen) == 1 and 0 < seen[0] < len(long_path.history)
+
+
+@pytest.mark.skipif(not POSIX, reason="signals of POSIX")
 def test_ctrl_c_in_a_single_load() -> None:
     """The wait ends at once."""
     surface = asp.example_surface(nodes=512)

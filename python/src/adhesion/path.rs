@@ -185,27 +185,28 @@ impl AdhesivePath {
     ///
     /// Parameters
     /// ----------
-    /// load, approach, area_fraction, mean_gap : float, optional
-    ///     One of them [N, m, -, m]; load and approach may be negative.
+    /// load, mean_pressure, approach, area_fraction, mean_gap : float, optional
+    ///     One of them [N, Pa, m, -, m]; load, mean pressure and approach may be negative.
     ///
     /// Returns
     /// -------
     /// AdhesiveBranch
     ///     With `pull_off`, the force that it takes.
-    #[pyo3(signature = (*, load=None, approach=None, area_fraction=None, mean_gap=None))]
+    #[pyo3(signature = (*, load=None, mean_pressure=None, approach=None, area_fraction=None, mean_gap=None))]
     fn unload(
         &self,
         py: Python<'_>,
         load: Option<f64>,
+        mean_pressure: Option<f64>,
         approach: Option<f64>,
         area_fraction: Option<f64>,
         mean_gap: Option<f64>,
     ) -> Fallible<AdhesiveBranch> {
-        let targets = Targets { load, mean_pressure: None, approach, area_fraction, mean_gap };
-        if targets.on(&self.grid)?.is_empty() {
+        let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
+        if targets.all()?.is_empty() {
             return self.turned(py, engine::AdhesivePath::unload);
         }
-        let target = targets.only(&self.grid)?;
+        let target = targets.only()?;
         self.turned(py, |path| path.unload_to(target))
     }
 
@@ -213,23 +214,24 @@ impl AdhesivePath {
     ///
     /// Parameters
     /// ----------
-    /// load, approach, area_fraction, mean_gap : float, optional
-    ///     One of them [N, m, -, m]; load and approach may be negative.
+    /// load, mean_pressure, approach, area_fraction, mean_gap : float, optional
+    ///     One of them [N, Pa, m, -, m]; load, mean pressure and approach may be negative.
     ///
     /// Returns
     /// -------
     /// AdhesiveBranch
-    #[pyo3(signature = (*, load=None, approach=None, area_fraction=None, mean_gap=None))]
+    #[pyo3(signature = (*, load=None, mean_pressure=None, approach=None, area_fraction=None, mean_gap=None))]
     fn load_to(
         &self,
         py: Python<'_>,
         load: Option<f64>,
+        mean_pressure: Option<f64>,
         approach: Option<f64>,
         area_fraction: Option<f64>,
         mean_gap: Option<f64>,
     ) -> Fallible<AdhesiveBranch> {
-        let targets = Targets { load, mean_pressure: None, approach, area_fraction, mean_gap };
-        let target = targets.only(&self.grid)?;
+        let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
+        let target = targets.only()?;
         self.turned(py, |path| path.load_to(target))
     }
 

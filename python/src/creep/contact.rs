@@ -13,6 +13,7 @@ use pyo3::types::PyDict;
 use super::columns::columns;
 use super::prony::Prony;
 use super::steps::CreepSteps;
+use crate::argument::whole;
 use crate::arrays::{Found, Kind, column, rows};
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
@@ -222,6 +223,10 @@ impl Creep {
 
     /// The state of the elastic path whose contact and gap those of a time are, for its fields: ``path.gap(state)``.
     ///
+    /// Where an approach below 0 holds the surfaces apart it is that of first touch, whose gap is too narrow: `gap` has
+    /// the one of the time, and ``seal.leak_of(held.gap(t), no_contact, path.size, periodic=path.is_periodic)``, with a
+    /// map of False alone, the leak.
+    ///
     /// Parameters
     /// ----------
     /// time : float
@@ -252,7 +257,7 @@ impl Creep {
         &self,
         py: Python<'py>,
         time: f64,
-        pieces: usize,
+        #[pyo3(from_py_with = whole)] pieces: usize,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
         self.field_of(py, self.grown(py, |grown| grown.pressure(time, pieces))?)
     }
@@ -337,12 +342,12 @@ impl Creep {
         &self,
         py: Python<'py>,
         end: f64,
-        steps: usize,
-        halvings: u32,
+        #[pyo3(from_py_with = whole)] steps: usize,
+        #[pyo3(from_py_with = whole)] halvings: usize,
     ) -> Fallible<Bound<'py, PyArray1<f64>>> {
         let least = Steps { least: steps, ..Steps::default() };
         // More often than a number has bits nothing is left to halve.
-        let steps = (0..halvings.min(usize::BITS)).fold(least, |steps, _| steps.halved());
+        let steps = (0..halvings.min(usize::BITS as usize)).fold(least, |steps, _| steps.halved());
         let times = detached(py, || steps.times(self.law(), self.course.corners(), end))??;
         Ok(column(py, times))
     }

@@ -10,6 +10,7 @@ use asperity::loading::History;
 use pyo3::prelude::*;
 
 use super::prony::Prony;
+use crate::argument::whole;
 use crate::arrays::{Found, Kind, column};
 use crate::compute::cancellable;
 use crate::errors::{Failure, Fallible};
@@ -52,9 +53,9 @@ fn steady_cycle<'py>(
     mean_load: f64,
     amplitude: f64,
     period: f64,
-    steps: usize,
+    #[pyo3(from_py_with = whole)] steps: usize,
     tolerance: f64,
-    most: usize,
+    #[pyo3(from_py_with = whole)] most: usize,
 ) -> Fallible<Bound<'py, PyAny>> {
     let task = (Increments::of(path)?.history, prony.prony.clone());
     let settings = CycleSettings { steps, tolerance, most };
@@ -70,7 +71,8 @@ fn steady_cycle<'py>(
 /// path, prony, mean_load, amplitude, steps, tolerance, most
 ///     As of `steady_cycle`.
 /// periods : array_like of float
-///     [s]; from the shortest on the contact has settled for a fast cycle.
+///     [s]; from the shortest on the contact has settled for a fast cycle. The program does it so, with ``steps=64``,
+///     ``tolerance=1e-4`` and at most some 1500 states of the path.
 ///
 /// Returns
 /// -------
@@ -85,9 +87,9 @@ fn steady_cycles<'py>(
     mean_load: f64,
     amplitude: f64,
     periods: &Bound<'py, PyAny>,
-    steps: usize,
+    #[pyo3(from_py_with = whole)] steps: usize,
     tolerance: f64,
-    most: usize,
+    #[pyo3(from_py_with = whole)] most: usize,
 ) -> Fallible<Vec<Bound<'py, PyAny>>> {
     let task = (Increments::of(path)?.history, prony.prony.clone());
     let periods = Found::of(periods, "periods", Kind::Real)?.list()?;

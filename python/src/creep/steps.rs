@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::columns::columns;
+use crate::argument::whole;
 use crate::arrays::rows;
 use crate::compute::cancellable;
 use crate::errors::Fallible;
@@ -96,7 +97,11 @@ impl CreepSteps {
     /// -------
     /// ndarray of float, [row, column]
     #[pyo3(signature = (pieces=40))]
-    fn pressure<'py>(&self, py: Python<'py>, pieces: usize) -> Fallible<Bound<'py, PyArray2<f64>>> {
+    fn pressure<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = whole)] pieces: usize,
+    ) -> Fallible<Bound<'py, PyArray2<f64>>> {
         let field = self
             .increments
             .field(py, |engine, bed| self.last(bed)?.pressure(pieces)?.pressure(bed, engine))?;
@@ -114,7 +119,11 @@ impl CreepSteps {
     /// -------
     /// ndarray of float, [row, column]
     #[pyo3(signature = (pieces=40))]
-    fn gap<'py>(&self, py: Python<'py>, pieces: usize) -> Fallible<Bound<'py, PyArray2<f64>>> {
+    fn gap<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = whole)] pieces: usize,
+    ) -> Fallible<Bound<'py, PyArray2<f64>>> {
         let field = self.increments.field(py, |engine, bed| self.last(bed)?.gap(pieces, engine))?;
         rows(py, field)
     }

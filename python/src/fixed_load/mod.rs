@@ -7,6 +7,7 @@ use asperity::{ContactTarget, FixedLoadSolver};
 use pyo3::prelude::*;
 
 use self::solution::Solution;
+use crate::argument::whole;
 use crate::compute::{detached, interruptible};
 use crate::errors::Fallible;
 use crate::given::{Hardness, warn_of};
@@ -108,13 +109,13 @@ fn solve(
     stiffness: bool,
     hardness: Option<&Bound<'_, PyAny>>,
     tolerance: f64,
-    max_iterations: usize,
-    memory_budget: Option<usize>,
+    #[pyo3(from_py_with = whole)] max_iterations: usize,
+    #[pyo3(from_py_with = whole)] memory_budget: Option<usize>,
     check: bool,
 ) -> Fallible<Solution> {
     let grid = *surface.grid();
     let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
-    let target = targets.only(&grid)?;
+    let target = targets.only()?;
     if check {
         warn_of(py, &surface, &half_space, hardness)?;
     }

@@ -9,6 +9,7 @@ use numpy::{Element, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::argument::whole;
 use crate::arrays::{rows, shape};
 use crate::choice;
 use crate::compute::detached;
@@ -239,7 +240,11 @@ impl Solution {
     /// -------
     /// PatchMap
     #[pyo3(signature = (*, connectivity=8))]
-    fn patches(&self, py: Python<'_>, connectivity: usize) -> Fallible<PatchMap> {
+    fn patches(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = whole)] connectivity: usize,
+    ) -> Fallible<PatchMap> {
         let (contact, pressure) =
             (&self.solution.fields.contact_map, &self.solution.fields.pressure);
         label(py, contact, Some(pressure), &self.setting, choice::connectivity(connectivity)?)

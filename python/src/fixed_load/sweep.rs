@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 
 use super::{Settings, Solution, solver};
+use crate::argument::whole;
 use crate::arrays::{Found, Kind};
 use crate::compute::{Answers, detached, pool, wait};
 use crate::errors::{Failure, Fallible};
@@ -173,8 +174,8 @@ fn sweep(
     stiffness: bool,
     hardness: Option<&Bound<'_, PyAny>>,
     tolerance: f64,
-    max_iterations: usize,
-    memory_budget: Option<usize>,
+    #[pyo3(from_py_with = whole)] max_iterations: usize,
+    #[pyo3(from_py_with = whole)] memory_budget: Option<usize>,
     check: bool,
 ) -> Fallible<LoadSweep> {
     let grid = *surface.grid();
@@ -202,7 +203,7 @@ fn sweep(
         if let Some(slot) = slots.into_iter().nth(place) {
             *slot = Some(value);
         }
-        target.only(&grid)
+        target.only()
     });
     let targets: Vec<ContactTarget> = targets.collect::<Fallible<_>>()?;
     if check {

@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::at::{PatchMap, label};
+use crate::argument::whole;
 use crate::arrays::{column, rows};
 use crate::choice::{choose, connectivity};
 use crate::compute::detached;
@@ -56,11 +57,11 @@ pub(crate) struct PatchAnalysis {
 fn patches(
     py: Python<'_>,
     path: &Bound<'_, PyAny>,
-    connectivity: usize,
+    #[pyo3(from_py_with = whole)] connectivity: usize,
 ) -> Fallible<PatchAnalysis> {
     let connectivity = self::connectivity(connectivity)?;
     let (history, setting) = if let Ok(path) = path.cast::<LoadingPath>() {
-        let history = path.get().history_now(py);
+        let history = path.get().history_now(py)?;
         (history.history, history.setting)
     } else if let Ok(history) = path.cast::<History>() {
         if !history.get().is_whole() {

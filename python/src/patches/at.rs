@@ -7,6 +7,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::argument::whole;
 use crate::arrays::{Found, Kind, Lengths, column, rows};
 use crate::choice::{self, Repeats};
 use crate::compute::detached;
@@ -190,7 +191,7 @@ fn label_patches(
     contact_map: &Bound<'_, PyAny>,
     size: Lengths,
     periodic: Repeats,
-    connectivity: usize,
+    #[pyo3(from_py_with = whole)] connectivity: usize,
     pressure: Option<&Bound<'_, PyAny>>,
 ) -> Fallible<PatchMap> {
     let found = Found::of(contact_map, "contact_map", Kind::Truth)?;

@@ -5,6 +5,7 @@ use asperity::patches::{Bins, FieldDistribution, gap_distribution, pressure_dist
 use asperity::{Error, Grid};
 use pyo3::prelude::*;
 
+use crate::argument::whole;
 use crate::arrays::{Found, Kind, column};
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
@@ -63,8 +64,8 @@ fn of_pressure<'py>(
     py: Python<'py>,
     pressure: &Bound<'py, PyAny>,
     contact_map: &Bound<'py, PyAny>,
-    bins: Option<usize>,
-    per_decade: Option<usize>,
+    #[pyo3(from_py_with = whole)] bins: Option<usize>,
+    #[pyo3(from_py_with = whole)] per_decade: Option<usize>,
 ) -> Fallible<Bound<'py, PyAny>> {
     distribution(py, (pressure, "pressure"), contact_map, (bins, per_decade), pressure_distribution)
 }
@@ -88,8 +89,8 @@ fn of_gap<'py>(
     py: Python<'py>,
     gap: &Bound<'py, PyAny>,
     contact_map: &Bound<'py, PyAny>,
-    bins: Option<usize>,
-    per_decade: Option<usize>,
+    #[pyo3(from_py_with = whole)] bins: Option<usize>,
+    #[pyo3(from_py_with = whole)] per_decade: Option<usize>,
 ) -> Fallible<Bound<'py, PyAny>> {
     distribution(py, (gap, "gap"), contact_map, (bins, per_decade), gap_distribution)
 }

@@ -5,7 +5,7 @@ pub(crate) mod setup;
 mod unloading;
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 use asperity::contact::Certificate;
@@ -15,8 +15,8 @@ use asperity::patches::constriction;
 use asperity::record::LoadingRecord;
 use asperity::{Error, Grid, LoadingState, Warning};
 use numpy::{Element, PyArray1, PyArray2};
+use parking_lot::{Mutex, MutexGuard};
 use pyo3::prelude::*;
-use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
 /// The path of the engine.
@@ -24,7 +24,7 @@ pub(crate) type Engine = asperity::LoadingPath;
 use self::inner::Inner;
 use crate::arrays::{column, rows, shape};
 use crate::choice;
-use crate::compute::{detached, interruptible_with};
+use crate::compute::{detached, interruptible_with, locked};
 use crate::errors::{Failure, Fallible};
 use crate::history::{History, Setting, check_on_path};
 use crate::results::result;
@@ -46,6 +46,10 @@ const STRETCH: Duration = Duration::from_millis(50);
 /// The lock of the interpreter is released while something is computed, so that two paths in two threads run side by
 /// side. One path may be used from several threads, which then take turns. After Ctrl-C, which is noticed between two
 /// windows of events, nothing is lost, and the path goes on where it was.
+///
+/// An analysis that reads many states, such as `first_yield` or `Seal.curve`, works on in the background after Ctrl-C.
+/// Until it is done, all that asks for states or fields of the path waits for it, `history` and ``repr`` too: another
+/// Ctrl-C ends that wait.
 #[pyclass(frozen, module = "asperity")]
 pub(crate) struct LoadingPath {
     inner: Arc<Mutex<Inner>>,
@@ -65,21 +69,17 @@ impl LoadingPath {
     }
 
     /// The path, for as long as nobody else uses it. No function of Python may be called meanwhile: it might ask for it too.
-    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Inner> {
-        // After a panic the engine says itself that it does not go on.
-        self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self, py: Python<'_>) -> Fallible<MutexGuard<'_, Inner>> {
+        locked(py, &self.inner)
     }
 
     fn grid(&self) -> &Grid {
         &self.setting.grid
     }
 
-    fn history_of(&self, inner: &Inner) -> History {
-        History { history: Arc::clone(&inner.history), setting: self.setting }
-    }
-
-    pub(crate) fn history_now(&self, py: Python<'_>) -> History {
-        self.history_of(&self.lock(py))
+    pub(crate) fn history_now(&self, py: Python<'_>) -> Fallible<History> {
+        let inner = self.lock(py)?;
+        Ok(History { history: Arc::clone(&inner.history), setting: self.setting })
     }
 
     /// The state that is meant: the one given, or the last one.
@@ -101,8 +101,8 @@ impl LoadingPath {
     }
 
     /// Those that the half-space or the record of the path knows.
-    pub(crate) fn elastic_bodies(&self, py: Python<'_>) -> Vec<(f64, f64)> {
-        self.lock(py).bodies.clone()
+    pub(crate) fn elastic_bodies(&self, py: Python<'_>) -> Fallible<Vec<(f64, f64)>> {
+        Ok(self.lock(py)?.bodies.clone())
     }
 
     /// Composite modulus, if it is known.
@@ -116,7 +116,7 @@ impl LoadingPath {
         py: Python<'_>,
         compute: impl FnOnce(&mut Engine) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
-        let mut inner = self.lock(py);
+        let mut inner = self.lock(py)?;
         let engine = inner.engine_mut();
         Ok(detached(py, || compute(engine))??)
     }
@@ -153,7 +153,7 @@ impl LoadingPath {
         state: Option<PyRef<'_, State>>,
         compute: impl FnOnce(&mut Engine, &LoadingState) -> Result<T, Error> + Send,
     ) -> Fallible<T> {
-        let mut inner = self.lock(py);
+        let mut inner = self.lock(py)?;
         let state = Self::state_or_last(&inner, state)?;
         let engine = inner.engine_mut();
         Ok(detached(py, || compute(engine, &state))??)
@@ -187,7 +187,7 @@ impl LoadingPath {
 
     /// What looks wrong with the last state.
     fn warnings(&self, py: Python<'_>) -> Fallible<Vec<Warning>> {
-        let mut inner = self.lock(py);
+        let mut inner = self.lock(py)?;
         let Some(state) = inner.present() else {
             return Ok(Vec::new());
         };
@@ -209,7 +209,7 @@ impl LoadingPath {
     }
 
     fn __next__(&self, py: Python<'_>) -> Fallible<Option<State>> {
-        let mut inner = self.lock(py);
+        let mut inner = self.lock(py)?;
         let state = if inner.waiting() > 0 {
             inner.next()?
         } else {
@@ -251,7 +251,7 @@ impl LoadingPath {
         let bar = Progress::new(py, progress)?;
         let result = (|| loop {
             let (goes_on, done, state) = {
-                let mut inner = self.lock(py);
+                let mut inner = self.lock(py)?;
                 let inner = &mut *inner;
                 let goes_on = detached(py, || inner.run_for(STRETCH))??;
                 (goes_on, inner.done(), inner.present())
@@ -267,7 +267,7 @@ impl LoadingPath {
         if check {
             warn_all(py, self.warnings(py)?)?;
         }
-        Ok(self.history_now(py))
+        self.history_now(py)
     }
 
     /// Go on to a target beyond the end of the path: all limits before are forgotten, and `run` or the iterator goes on.
@@ -287,37 +287,37 @@ impl LoadingPath {
         mean_gap: Option<f64>,
     ) -> Fallible<()> {
         let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
-        let target = targets.only(self.grid())?;
-        let mut inner = self.lock(py);
+        let target = targets.only()?;
+        let mut inner = self.lock(py)?;
         let inner = &mut *inner;
         Ok(detached(py, || inner.continue_to(target))??)
     }
 
     /// All states so far.
     #[getter]
-    fn history(&self, py: Python<'_>) -> History {
+    fn history(&self, py: Python<'_>) -> Fallible<History> {
         self.history_now(py)
     }
 
     /// The last state so far, None before the first.
     #[getter]
-    fn state(&self, py: Python<'_>) -> Option<State> {
-        self.lock(py).present().map(State::new)
+    fn state(&self, py: Python<'_>) -> Fallible<Option<State>> {
+        Ok(self.lock(py)?.present().map(State::new))
     }
 
     /// Why the path has ended, None while there is more to come: ``"load"``, ``"approach"``, ``"mean gap"``,
     /// ``"area fraction"``, ``"nodes"``, ``"full contact"``, ``"fully plastic"``, ``"memory"``, ``"no more events"`` or
     /// ``"failed"``.
     #[getter]
-    fn end(&self, py: Python<'_>) -> Option<&'static str> {
-        self.lock(py).end().map(Self::end_in_words)
+    fn end(&self, py: Python<'_>) -> Fallible<Option<&'static str>> {
+        Ok(self.lock(py)?.end().map(Self::end_in_words))
     }
 
     /// Where the path is to end, by name.
     #[getter]
     fn targets<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyDict>> {
         let targets = PyDict::new(py);
-        let all = self.lock(py).targets();
+        let all = self.lock(py)?.targets();
         for (name, value) in all.into_iter().map(named) {
             targets.set_item(name, value)?;
         }
@@ -345,7 +345,7 @@ impl LoadingPath {
     /// Young's modulus [Pa] and Poisson's ratio of each elastic body, if the half-space or the record of the path knows them: of one if
     /// the other is rigid.
     #[getter]
-    fn bodies(&self, py: Python<'_>) -> Vec<(f64, f64)> {
+    fn bodies(&self, py: Python<'_>) -> Fallible<Vec<(f64, f64)>> {
         self.elastic_bodies(py)
     }
 
@@ -358,7 +358,7 @@ impl LoadingPath {
     /// The surface, with heights [m] from its highest node.
     #[getter]
     fn surface(&self, py: Python<'_>) -> Fallible<Surface> {
-        let inner = self.lock(py);
+        let inner = self.lock(py)?;
         let gaps = inner.engine().problem().initial_gap().iter().map(|gap| -gap);
         let (nx, ny) = self.grid().shape();
         Ok(Surface::new(*self.grid(), DMatrix::from_iterator(nx, ny, gaps))?)
@@ -367,20 +367,20 @@ impl LoadingPath {
     /// Hardness of each node [Pa], ``[row, column]``; None without one.
     #[getter]
     fn hardness<'py>(&self, py: Python<'py>) -> Fallible<Option<Bound<'py, PyArray2<f64>>>> {
-        let map = self.lock(py).engine().hardness_map();
+        let map = self.lock(py)?.engine().hardness_map();
         map.map(|map| rows(py, map)).transpose()
     }
 
     /// Number of nodes in contact when the factor was given up for iterations, None while it is in use.
     #[getter]
-    fn handed_over_at(&self, py: Python<'_>) -> Option<usize> {
-        self.lock(py).engine().handed_over_at()
+    fn handed_over_at(&self, py: Python<'_>) -> Fallible<Option<usize>> {
+        Ok(self.lock(py)?.engine().handed_over_at())
     }
 
     /// Bytes that the engine holds for the path.
     #[getter]
-    fn nbytes(&self, py: Python<'_>) -> usize {
-        self.lock(py).engine().bytes()
+    fn nbytes(&self, py: Python<'_>) -> Fallible<usize> {
+        Ok(self.lock(py)?.engine().bytes())
     }
 
     /// Pressure [Pa] at a state.
@@ -599,7 +599,7 @@ impl LoadingPath {
         &self,
         py: Python<'py>,
     ) -> Fallible<(Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>)> {
-        let order = self.lock(py).record()?.contact()?;
+        let order = self.lock(py)?.record()?.contact()?;
         let nodes = order.order().iter().map(|node| self.grid().coordinates(*node));
         let (columns, rows) = nodes.map(|(ix, iy)| (ix as i64, iy as i64)).unzip();
         Ok((column(py, rows), column(py, columns)))
@@ -615,7 +615,7 @@ impl LoadingPath {
     ///     Whether pressure and gap of the last state go into it, and the plastic depth.
     #[pyo3(signature = (path, *, fields=false))]
     fn save(&self, py: Python<'_>, path: PathBuf, fields: bool) -> Fallible<()> {
-        let mut inner = self.lock(py);
+        let mut inner = self.lock(py)?;
         let inner = &mut *inner;
         let has_hardness = self.setting.has_hardness;
         Ok(detached(py, move || {
@@ -633,12 +633,14 @@ impl LoadingPath {
         })??)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
-        let inner = self.lock(py);
+    fn __repr__(&self, py: Python<'_>) -> Fallible<String> {
+        let inner = self.lock(py)?;
         let (rows, columns) = self.shape();
         let states = inner.history.states().len();
         let end = inner.end().map_or("more to come", Self::end_in_words);
-        format!("<LoadingPath: {states} states on {rows} x {columns} rows and columns; end: {end}>")
+        Ok(format!(
+            "<LoadingPath: {states} states on {rows} x {columns} rows and columns; end: {end}>"
+        ))
     }
 }
 

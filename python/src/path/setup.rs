@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use super::LoadingPath;
 use super::inner::{Inner, Means, Updater};
 use crate::adhesion::{Adhesion, AdhesivePath, set_up};
+use crate::argument::whole;
 use crate::choice::choose;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
@@ -81,18 +82,18 @@ fn load_path<'py>(
     approach: Option<f64>,
     area_fraction: Option<f64>,
     mean_gap: Option<f64>,
-    nodes: Option<usize>,
+    #[pyo3(from_py_with = whole)] nodes: Option<usize>,
     hardness: Option<&Bound<'_, PyAny>>,
     adhesion: Option<PyRef<'_, Adhesion>>,
     updater: &str,
     rule: &str,
-    window_size: Option<usize>,
-    memory_budget: Option<usize>,
+    #[pyo3(from_py_with = whole)] window_size: Option<usize>,
+    #[pyo3(from_py_with = whole)] memory_budget: Option<usize>,
     check: bool,
 ) -> Fallible<Bound<'py, PyAny>> {
     let topography = surface.topography()?;
     let grid = *surface.grid();
-    let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap }.on(&grid)?;
+    let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap }.all()?;
     let updater = choose("updater", updater, &Updater::WORDS)?;
     let rule = choose("rule", rule, &RULES)?;
     LoadingSolver::check_room(&grid, half_space.surroundings(), memory_budget)?;
@@ -174,7 +175,7 @@ fn open<'py>(
     path: PathBuf,
     half_space: Option<PyRef<'_, HalfSpace>>,
     updater: &str,
-    memory_budget: Option<usize>,
+    #[pyo3(from_py_with = whole)] memory_budget: Option<usize>,
 ) -> Fallible<Bound<'py, PyAny>> {
     let updater = choose("updater", updater, &Updater::WORDS)?;
     let record = match detached(py, || LoadingRecord::read_npz(&path))? {

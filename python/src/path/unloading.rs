@@ -30,7 +30,7 @@ pub(crate) struct Unloading {
 pub(super) fn unload(path: &Bound<'_, LoadingPath>) -> Fallible<Unloading> {
     let (py, this) = (path.py(), path.get());
     let (last, map, kernel, means) = {
-        let mut inner = this.lock(py);
+        let mut inner = this.lock(py)?;
         let last = LoadingPath::state_or_last(&inner, None)?;
         let means = inner.means;
         let engine = inner.engine_mut();
@@ -52,7 +52,7 @@ pub(super) fn unload(path: &Bound<'_, LoadingPath>) -> Fallible<Unloading> {
         let inner = super::Inner::live(solver.into_path(), &[], means);
         let unloading = LoadingPath::new(inner, this.e_star);
         unloading.run(py, None, false)?;
-        let states = unloading.history_now(py).history;
+        let states = unloading.history_now(py)?.history;
         Arc::new(States::clone(&states).up_to_load(load))
     } else {
         Arc::new(States::default())

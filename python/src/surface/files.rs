@@ -196,13 +196,11 @@ pub(super) fn save(
         Some("npy") => Ok(detached(py, || write_npy(path, heights))??),
         Some("gsf") => Ok(detached(py, || write_gsf(path, grid, heights, "m"))??),
         Some("x3p") => Ok(detached(py, || write_x3p(path, grid, heights))??),
-        _ => Err(FileError::BadFile {
-            path: path.to_path_buf(),
-            format: "surface",
-            offset: None,
-            reason: "its extension must be .npy, .gsf or .x3p to say the format".to_string(),
+        _ => {
+            let reason = "a surface cannot be written with this extension: .npy, .gsf and .x3p say the format";
+            let source = std::io::Error::new(std::io::ErrorKind::Unsupported, reason);
+            Err(FileError::Io { path: path.to_path_buf(), source }.into())
         }
-        .into()),
     }
 }
 

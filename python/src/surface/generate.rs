@@ -7,6 +7,7 @@ use asperity::{Grid, LoadingSolver, Surface as Heights};
 use pyo3::prelude::*;
 
 use super::Surface;
+use crate::argument::whole;
 use crate::arrays::Lengths;
 use crate::choice::axis;
 use crate::compute::detached;
@@ -59,7 +60,7 @@ fn sampled(py: Python<'_>, shape: &(impl Heights + Sync), grid: Grid) -> Fallibl
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn self_affine(
     py: Python<'_>,
-    shape: (usize, usize),
+    #[pyo3(from_py_with = whole)] shape: (usize, usize),
     size: Lengths,
     hurst: f64,
     rolloff: f64,
@@ -68,7 +69,7 @@ fn self_affine(
     rms_height: Option<f64>,
     rms_gradient: Option<f64>,
     prefactor: Option<f64>,
-    seed: u64,
+    #[pyo3(from_py_with = whole)] seed: u64,
 ) -> Fallible<Surface> {
     let amplitude = match (rms_height, rms_gradient, prefactor) {
         (Some(height), None, None) => Amplitude::RmsHeight(height),
@@ -105,8 +106,8 @@ fn self_affine(
 #[pyo3(signature = (nodes=256, seed=1, *, size=1e-2, short_cutoff=None))]
 fn example_surface(
     py: Python<'_>,
-    nodes: usize,
-    seed: u64,
+    #[pyo3(from_py_with = whole)] nodes: usize,
+    #[pyo3(from_py_with = whole)] seed: u64,
     size: f64,
     short_cutoff: Option<f64>,
 ) -> Fallible<Surface> {
@@ -152,7 +153,7 @@ macro_rules! placed {
 fn paraboloid(
     py: Python<'_>,
     radius: Lengths,
-    shape: (usize, usize),
+    #[pyo3(from_py_with = whole)] shape: (usize, usize),
     size: Lengths,
     center: Option<(f64, f64)>,
 ) -> Fallible<Surface> {
@@ -185,7 +186,7 @@ fn paraboloid(
 fn cylinder(
     py: Python<'_>,
     radius: f64,
-    shape: (usize, usize),
+    #[pyo3(from_py_with = whole)] shape: (usize, usize),
     size: Lengths,
     axis: &str,
     center: Option<(f64, f64)>,
@@ -214,7 +215,7 @@ fn cylinder(
 fn cone(
     py: Python<'_>,
     slope: f64,
-    shape: (usize, usize),
+    #[pyo3(from_py_with = whole)] shape: (usize, usize),
     size: Lengths,
     center: Option<(f64, f64)>,
 ) -> Fallible<Surface> {
@@ -247,7 +248,7 @@ fn wave(
     py: Python<'_>,
     amplitude: f64,
     wavelength: Lengths,
-    shape: (usize, usize),
+    #[pyo3(from_py_with = whole)] shape: (usize, usize),
     size: Lengths,
     axis: &str,
     center: Option<(f64, f64)>,

@@ -9,14 +9,15 @@ use std::path::PathBuf;
 
 use asperity::nalgebra::DMatrix;
 use asperity::surface::{
-    Filter, Interpolation, Topography, Trend, Window, count_missing, fill_missing,
+    Filter, Interpolation, Topography, Trend, Window, count_missing, fill_missing, level_measured,
 };
 use asperity::{Error, Grid, Surface as _, Warning};
 use numpy::PyArray2;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::argument::one_of;
+use crate::argument::{not_one, whole};
 use crate::arrays::{self, Found, Kind, Lengths};
 use crate::choice;
 use crate::compute::detached;
@@ -107,7 +108,12 @@ impl Surface {
 
     /// What was made of this surface.
     fn with(&self, topography: Topography) -> Self {
-        Self { title: self.title.clone(), periodic: self.periodic, ..Self::of(topography) }
+        self.named(Self::of(topography))
+    }
+
+    /// The same of heights that may have holes.
+    fn named(&self, made: Self) -> Self {
+        Self { title: self.title.clone(), periodic: self.periodic, ..made }
     }
 
     /// The same heights; nothing is known of whether they repeat unless what was made of the whole still does.
@@ -153,11 +159,15 @@ impl Surface {
     }
 }
 
-/// A range of rows or columns: first and behind the last.
-enum Range {
-    Pair((usize, usize)),
+/// A range of rows or columns.
+type Range = Option<(usize, usize)>;
+
+fn range(given: &Bound<'_, PyAny>) -> PyResult<Range> {
+    whole(given).map_err(|error| match error.is_instance_of::<PyTypeError>(given.py()) {
+        true => not_one(given, "(first, behind the last)"),
+        false => error,
+    })
 }
-one_of!(Range, "(first, behind the last)", Pair);
 
 #[pymethods]
 impl Surface {
@@ -233,6 +243,9 @@ impl Surface {
 
     /// Fill missing nodes smoothly from those around them; all others stay as they are, bit for bit.
     ///
+    /// Take a tilt off before, with `level`: what is filled first is tipped with the plane, and may carry most of the
+    /// load.
+    ///
     /// Returns
     /// -------
     /// Surface
@@ -250,7 +263,8 @@ impl Surface {
         Ok(self.with(Topography::new(self.grid, filled)?))
     }
 
-    /// Take a trend off the heights, by least squares.
+    /// Take a trend off the heights, by least squares of those that were measured. Missing nodes stay missing:
+    /// `fill_missing` comes after.
     ///
     /// Parameters
     /// ----------
@@ -263,7 +277,8 @@ impl Surface {
     #[pyo3(signature = (trend="plane"))]
     fn level(&self, py: Python<'_>, trend: &str) -> Fallible<Self> {
         let trend = choice::trend(trend)?;
-        Ok(self.made(py, |surface| surface.level(trend))?.repeats_if(trend == Trend::Mean))
+        let heights = detached(py, || level_measured(&self.grid, self.matrix(), trend))??;
+        Ok(self.named(Self::new(self.grid, heights)?).repeats_if(trend == Trend::Mean))
     }
 
     /// The trend that `level` would take off.
@@ -277,7 +292,7 @@ impl Surface {
     /// results.Trend
     #[pyo3(signature = (trend="plane"))]
     fn trend<'py>(&self, py: Python<'py>, trend: &str) -> Fallible<Bound<'py, PyAny>> {
-        statistics::trend(py, self.topography()?, choice::trend(trend)?)
+        statistics::trend(py, (&self.grid, self.matrix()), choice::trend(trend)?)
     }
 
     /// A piece of the surface, which may have no missing nodes where the whole has some. Nothing is said of whether it
@@ -292,11 +307,13 @@ impl Surface {
     /// -------
     /// Surface
     #[pyo3(signature = (rows=None, columns=None))]
-    fn crop(&self, py: Python<'_>, rows: Option<Range>, columns: Option<Range>) -> Fallible<Self> {
-        let of = |range: Option<Range>, all: usize| match range {
-            Some(Range::Pair((start, end))) => start..end,
-            None => 0..all,
-        };
+    fn crop(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = range)] rows: Range,
+        #[pyo3(from_py_with = range)] columns: Range,
+    ) -> Fallible<Self> {
+        let of = |range: Range, all: usize| range.map_or(0..all, |(start, end)| start..end);
         let (columns, rows) = (of(columns, self.grid.nx()), of(rows, self.grid.ny()));
         let is_whole = (rows.len(), columns.len()) == self.shape();
         // Of a surface with holes too: a piece may have none.
@@ -307,8 +324,7 @@ impl Surface {
             let grid = *blank.crop(columns, rows)?.grid();
             Self::new(grid, matrix.view(first, grid.shape()).into_owned())
         })??;
-        let piece = Self { title: self.title.clone(), periodic: self.periodic, ..piece };
-        Ok(piece.repeats_if(is_whole))
+        Ok(self.named(piece).repeats_if(is_whole))
     }
 
     /// The same surface on another number of nodes.
@@ -324,7 +340,12 @@ impl Surface {
     /// -------
     /// Surface
     #[pyo3(signature = (shape, method="bilinear"))]
-    fn resample(&self, py: Python<'_>, shape: (usize, usize), method: &str) -> Fallible<Self> {
+    fn resample(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = whole)] shape: (usize, usize),
+        method: &str,
+    ) -> Fallible<Self> {
         let method = choice::interpolation(method)?;
         let (lx, ly) = self.grid.sides();
         generate::check_room(&Grid::with_sides(shape.1, shape.0, lx, ly)?)?;

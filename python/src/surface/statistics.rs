@@ -1,7 +1,9 @@
 //! Statistics of surfaces.
 
+use asperity::Grid;
+use asperity::nalgebra::DMatrix;
 use asperity::surface::{
-    Axis, Estimate, MaterialRatio, RadialBins, SpectralBin, Topography, Trend,
+    Axis, Estimate, FittedTrend, MaterialRatio, RadialBins, SpectralBin, Topography, Trend,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
@@ -13,10 +15,10 @@ use crate::results::result;
 
 pub(super) fn trend<'py>(
     py: Python<'py>,
-    surface: &Topography,
+    (grid, heights): (&Grid, &DMatrix<f64>),
     trend: Trend,
 ) -> Fallible<Bound<'py, PyAny>> {
-    let fitted = detached(py, || surface.trend(trend))?;
+    let fitted = detached(py, || FittedTrend::of_measured(grid, heights, trend))??;
     result!(py, "Trend", {
         height: fitted.height(),
         slopes: fitted.slopes(),
