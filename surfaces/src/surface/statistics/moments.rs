@@ -27,7 +27,8 @@ use crate::surface::fourier::Waves;
 /// ```
 ///
 /// since the mean of cos⁴ is 3/8. Of an isotropic surface every profile has them, and m₄ is as well
-/// (m₄₀ + 3 m₂₂ + m₀₄)/3, which is what tamaas uses.
+/// (m₄₀ + 3 m₂₂ + m₀₄)/3, which is what tamaas uses. A map of one row counts as a surface of ridges here: m₀, m₂₀ and
+/// m₄₀ are those of the row itself.
 ///
 /// # References
 ///
