@@ -39,8 +39,12 @@ const LEAST_RATE: f64 = 1e-11;
 /// that the window just did not reach.
 const NEAR: f64 = 1e-12;
 
+/// The same of loads: their unit goes with a stiffness, which is not the same at both ends of a step or about the mean
+/// planes.
+const NEAR_LOAD: f64 = 10.0 * NEAR;
+
 /// A state that was found at a target is off by less than this part of its unit.
-const AT_TARGET: f64 = 10.0 * NEAR;
+const AT_TARGET: f64 = 2.0 * NEAR_LOAD;
 
 /// What loads are differences of: forces, and what rounding of the greatest length moves at a stiffness. On stiff bodies
 /// that sticks out of small loads.
@@ -131,11 +135,12 @@ impl Targets {
             };
             let is_apart = state.contact_nodes == 0 && state.load == 0.0;
             let pulls = sticks && is_apart && direction == Direction::Loading;
+            let greatest = value.abs().max(present.abs());
             let unit = match *target {
-                ContactTarget::Load(_) => force_unit(value.abs(), present, stiffness, length),
-                _ => value.abs().max(present.abs()),
+                ContactTarget::Load(_) => force_unit(0.0, greatest, stiffness, length),
+                _ => greatest,
             };
-            let rounding = AT_TARGET * unit;
+            let rounding = NEAR * unit;
             if sign * way < -rounding && !(quantity == "load" && pulls) {
                 return Err(AdhesionError::Behind { quantity, value, present }.into());
             }
@@ -155,7 +160,7 @@ impl Targets {
             let (left, near, rate, unit) = match *target {
                 // Surfaces that are drawn together bear none when some nodes press as much as others pull.
                 ContactTarget::Load(to)
-                    if (0.0..=NEAR * force).contains(&to)
+                    if (0.0..=NEAR_LOAD * force).contains(&to)
                         && contact_nodes == 0
                         && direction == Direction::Loading =>
                 {
@@ -164,7 +169,7 @@ impl Targets {
                 // The load may rise or fall on either branch.
                 ContactTarget::Load(to) => {
                     let left = to - load;
-                    (left.abs(), NEAR * force, left.signum() * load_rate, stiffness)
+                    (left.abs(), NEAR_LOAD * force, left.signum() * load_rate, stiffness)
                 }
                 ContactTarget::Approach(to) => (
                     sign * (to - gauge.reported_approach(approach, load)),

@@ -175,11 +175,6 @@ pub(super) fn latin1(bytes: &[u8]) -> String {
     text.trim_matches(|c: char| c == '\0' || c.is_whitespace()).to_string()
 }
 
-/// A text of a file with U+FFFD in place of control characters, which terminals obey.
-pub(super) fn printable(text: &str) -> String {
-    text.replace(char::is_control, "\u{fffd}")
-}
-
 /// Characters of a text that is kept once for each of many maps.
 #[cfg(feature = "io")]
 const SHARED: usize = 128;

@@ -3,7 +3,6 @@
 use std::io;
 use std::path::Path;
 
-use super::bytes::printable;
 use crate::{Error, FileError};
 
 /// A defect of the file as a whole, `fault!("{nx} maps")`, or at a place in it, `fault!(at(12), "{nx} maps")`.
@@ -71,4 +70,9 @@ impl Fault {
             Self::Refused(error) => return error,
         })
     }
+}
+
+/// A text of a file with U+FFFD in place of control characters, which terminals obey.
+pub(super) fn printable(text: &str) -> String {
+    text.replace(char::is_control, "\u{fffd}")
 }

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use nalgebra::DMatrix;
 
-use super::bytes::{printable, read_all, read_file, shared};
+use super::bytes::{read_all, read_file, shared};
+use super::fault::printable;
 use super::format::{Besides, Format, not_read};
 use super::measured::MeasuredSurface;
 use super::raw::Channel;

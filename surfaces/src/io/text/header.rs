@@ -1,6 +1,5 @@
 //! What stands above the numbers of a text: lines like `# Width: 10 µm`, and names of columns.
 
-use super::table::Table;
 use super::{markers, words};
 use crate::io::fault::Fault;
 use crate::io::unit::{LengthUnit, with_factor};
@@ -236,31 +235,33 @@ impl Header {
     }
 
     /// Takes the mask of SPIP from behind the heights: 0 for each that is void, 1 for any other (as in Gwyddion's
-    /// `spip-asc.c`).
-    pub(super) fn take_mask(&mut self, table: &mut Table) -> Result<(), Fault> {
+    /// `spip-asc.c`). Whether there is one.
+    pub(super) fn take_mask(
+        &mut self,
+        columns: usize,
+        values: &mut Vec<f64>,
+    ) -> Result<bool, Fault> {
         let Some(count) = self.void_count.filter(|count| *count > 0) else {
-            return Ok(());
+            return Ok(false);
         };
         let is_mask = |rows: &[f64]| rows.iter().all(|number| matches!(*number, 0.0 | 1.0));
-        let (columns, rows) = (table.columns, table.rows());
+        let rows = values.len() / columns.max(1);
         if self.rows == Some(rows) {
-            return Ok(());
+            return Ok(false);
         }
-        let nodes = table.values.len() / 2;
+        let nodes = values.len() / 2;
         ensure!(
             self.columns == Some(columns)
                 && self.rows.is_some_and(|stated| 2 * stated == rows)
-                && table.values.get(nodes..).is_some_and(is_mask),
+                && values.get(nodes..).is_some_and(is_mask),
             "the header says that {count} of the heights are void: it has to say as well how many columns and rows \
              there are, and as many rows of 0, where the height is void, and 1 are expected behind those of the \
              heights; there are {rows} rows of {columns} numbers in all; without the line 'voidpixels' all are \
              read as heights"
         );
-        let mask = table.values.split_off(nodes);
+        let mask = values.split_off(nodes);
         self.mask = Some(mask.into_iter().map(|valid| valid == 0.0).collect());
-        // An empty line before the mask parts no maps.
-        table.second_block = None;
-        Ok(())
+        Ok(true)
     }
 
     /// What is said of lines that are not understood.

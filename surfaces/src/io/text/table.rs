@@ -190,7 +190,10 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
             }
             let first = rows.into_iter().next().map_or(ahead, |(lines, _)| lines);
             let mut table = Table::read(first, None, header.stated_columns())?;
-            header.take_mask(&mut table)?;
+            if header.take_mask(table.columns, &mut table.values)? {
+                // An empty line before the mask parts no maps.
+                table.second_block = None;
+            }
             if let Some(line) = unknown {
                 table.check_above(&line)?;
             }
