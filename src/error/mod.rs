@@ -123,8 +123,8 @@ pub enum Error {
         step: usize,
     },
 
-    /// A number of a state on record is missing or infinite.
-    #[error("the record is damaged: at step {step} the {quantity} is {value}")]
+    /// A number of a state that was read or handed over is missing or infinite.
+    #[error("at step {step} the {quantity} is {value}, which no state has")]
     RecordNotFinite {
         /// Number of events up to the state.
         step: usize,

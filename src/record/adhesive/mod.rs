@@ -59,8 +59,8 @@ impl AdhesiveRecord {
     /// # Errors
     ///
     /// [`Error::LengthMismatch`] for fewer states or more, as for those of one branch of several,
-    /// [`Error::StateNotReached`] for others than these, and [`Error::Inconsistent`] and [`Error::NotFinite`] for numbers
-    /// that no state has.
+    /// [`Error::StateNotReached`] for others than these, and [`Error::Inconsistent`] and
+    /// [`Error::RecordNotFinite`] for numbers that no state has.
     pub fn new(path: &AdhesivePath, states: AdhesiveBranch) -> Result<Self, Error> {
         let present = path.state().map_or(0, |state| state.step);
         let steps = states.states().iter().map(|state| state.step);
@@ -89,7 +89,7 @@ impl AdhesiveRecord {
 
     /// # Errors
     ///
-    /// [`Error::NotFinite`], [`Error::Inconsistent`], and those of [`Trace::follow`].
+    /// [`Error::WrongBoundary`], [`Error::RecordNotFinite`], [`Error::Inconsistent`], and those of [`Trace::follow`].
     fn checked(self) -> Result<Self, Error> {
         self.grid.check_shape(self.heights.shape())?;
         self.kernel.check_boundary()?;

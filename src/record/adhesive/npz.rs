@@ -174,7 +174,7 @@ impl AdhesiveRecord {
     /// # Errors
     ///
     /// [`FileError::Io`]; [`FileError::BadFile`] for a file that is damaged, not such a record, or of a newer version;
-    /// [`Error::NotFinite`], [`Error::Inconsistent`] and
+    /// [`Error::WrongBoundary`], [`Error::RecordNotFinite`], [`Error::Inconsistent`] and
     /// [`AdhesionError::WrongChanges`](crate::AdhesionError::WrongChanges) for states of no path.
     pub fn read_npz(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();

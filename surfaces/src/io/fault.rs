@@ -72,7 +72,7 @@ impl Fault {
     }
 }
 
-/// A text of a file with U+FFFD in place of control characters, which terminals obey.
+/// A text of a file with U+FFFD in place of control characters, which terminals obey, and a blank for a tab.
 pub(super) fn printable(text: &str) -> String {
-    text.replace(char::is_control, "\u{fffd}")
+    text.replace('\t', " ").replace(char::is_control, "\u{fffd}")
 }

@@ -425,7 +425,7 @@ mod tests {
     fn no_control_characters_of_files_are_shown() -> Result<(), Error> {
         let rows = "1.5 4.25 1 5\n2 6.5 2 8\n5 8 9.75 3\n1 2 9 4\n";
         let head =
-            "# Channel: a\x1b[2Jb\n# Width: 1 m\n# Height: 1 m\n# by \x1b]0;c\x07 and \u{9b}3m\n";
+            "# Channel: a\x1b[2Jb\n# Width: 1 m\n# Height: 1 m\n# by \x1b]0;c\x07\tand \u{9b}3m\n";
         // They are few among other letters, or the file is no text.
         let head = format!("{head}# {}\n", " ".repeat(1000));
         let text = format!("{head}# Value units: m\n{rows}");

@@ -1,6 +1,6 @@
 //! Numbers that stand for missing heights, although the file does not say so.
 
-use crate::number::counted;
+use crate::number::{counted, significant};
 
 /// How many times the range of all other heights a number has to be away from them: one that programs use as a mark,
 /// and any other that occurs more than once, of which a word is said.
@@ -50,10 +50,11 @@ pub(super) fn remove(values: &mut [f64]) -> Vec<String> {
         let count = finite().filter(|value| **value == number).count();
         if count > 1 && finite().count() - count >= ENOUGH {
             notes.push(format!(
-                "{} have the number {number:?}, {distance:.0} times the range of all others away from them, and it is \
+                "{} have the number {number:?}, {} times the range of all others away from them, and it is \
                  taken as their height; if it stands for missing heights, write 'NODATA_value {number:?}' in a line \
                  above the numbers",
-                counted(count, "node")
+                counted(count, "node"),
+                significant(distance, 3)
             ));
         }
     }
