@@ -46,7 +46,8 @@ impl<'a> FixedLoadBuilder<'a> {
 
     /// Greatest error that a solution may have, 10⁻⁸ by default: of every gap in contact and of every
     /// overlap, relative to the approach, or to C(0, 0) p̄ if that is larger on a periodic half-space
-    /// of arbitrary mean displacement. From 10⁻¹² on rounding begins to matter.
+    /// of arbitrary mean displacement. From 10⁻¹² on rounding begins to matter. Nodes in contact are counted
+    /// ([`ContactTarget::AreaFraction`](crate::ContactTarget::AreaFraction)) within 10⁻³ at most.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.settings.tolerance = tolerance;
         self

@@ -33,6 +33,7 @@ pub(super) fn solve_target(
         ContactTarget::Approach(approach) => stepper.step_to_approach(approach),
         ContactTarget::AreaFraction(fraction) => {
             let nodes = stepper.finest().grid.nodes_in(fraction)?;
+            stepper.count_nodes();
             search(stepper, Sought::Nodes(nodes))
         }
         ContactTarget::MeanGap(mean_gap) => {

@@ -10,7 +10,7 @@ use super::plateau::Plateau;
 use super::settings::Settings;
 use super::solution::{FixedLoadSolution, SolverEffort};
 use super::tangent::Tangent;
-use super::tuning::{DECIDED, LOOSEST_DECIDED};
+use super::tuning::{DECIDED, LOOSEST_COUNT, LOOSEST_DECIDED};
 use crate::contact::ContactState;
 use crate::hardness::Hardness;
 use crate::parallel::inside;
@@ -20,7 +20,9 @@ use crate::{Error, Grid};
 #[derive(Debug)]
 pub(super) struct Stepper<'a> {
     settings: &'a Settings,
-    /// Greatest error at present: that of the settings, or less where that does not decide which nodes yield.
+    /// Greatest error of a solution: that of the settings, or less where nodes are counted.
+    tolerance: f64,
+    /// The same at present: less where that does not decide which nodes yield.
     present_tolerance: f64,
     hierarchy: &'a mut Hierarchy,
     hardness: Option<&'a Hardness>,
@@ -43,11 +45,12 @@ impl<'a> Stepper<'a> {
         // What was spent before, if that ended with an error, is no part of the next solution.
         hierarchy.take_convolutions();
         let continuation = Continuation::default();
-        let present_tolerance = settings.tolerance;
+        let tolerance = settings.tolerance;
         let (last, yielded, iterations) = (None, Vec::new(), 0);
         Self {
             settings,
-            present_tolerance,
+            tolerance,
+            present_tolerance: tolerance,
             hierarchy,
             hardness,
             continuation,
@@ -103,7 +106,13 @@ impl<'a> Stepper<'a> {
 
     /// Greatest error of a solution.
     pub(super) fn tolerance(&self) -> f64 {
-        self.settings.tolerance
+        self.tolerance
+    }
+
+    /// No looser tolerance from now on than one that tells how many nodes are in contact.
+    pub(super) fn count_nodes(&mut self) {
+        self.tolerance = self.tolerance.min(LOOSEST_COUNT);
+        self.present_tolerance = self.tolerance;
     }
 
     /// Contact under the load `load` \[N\].
@@ -189,7 +198,7 @@ impl<'a> Stepper<'a> {
         self.iterations = 0;
         if let Some(hardness) = self.hardness {
             let found = self.yield_to(hardness, prescribed, sum);
-            self.present_tolerance = self.settings.tolerance;
+            self.present_tolerance = self.tolerance;
             self.yielded = found?;
             return self.solution(load);
         }
@@ -231,7 +240,7 @@ impl<'a> Stepper<'a> {
                 | (Ok(Decision::Open { .. }) | Err(Error::NoConvergence { .. }), Some(residual)) => {
                     return Err(Error::NoConvergence {
                         residual,
-                        tolerance: self.settings.tolerance,
+                        tolerance: self.tolerance,
                         iterations: self.iterations,
                     });
                 }

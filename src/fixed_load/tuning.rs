@@ -70,6 +70,10 @@ pub(super) const DECIDED: f64 = 0.01;
 /// As long as it is looser than this: rounding has a say in the end.
 pub(super) const LOOSEST_DECIDED: f64 = 1e-8;
 
+/// The loosest tolerance with which nodes in contact are counted. Within four hundredths of the approach the pressures of
+/// the last load, scaled, are a solution under any greater one, and no more nodes touch.
+pub(super) const LOOSEST_COUNT: f64 = 1e-3;
+
 /// The part of a load that is rounding: where elastic nodes carry no more, the load is that of a plateau. Sums of 10⁶
 /// pressures err by 10⁻¹³.
 pub(super) const NO_REST: f64 = 1e-12;
