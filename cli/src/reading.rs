@@ -51,7 +51,7 @@ pub(crate) struct Reading {
     #[arg(long, help_heading = "Reading the file")]
     ignore_mask: bool,
 
-    /// Interpolate missing nodes from the nodes around them
+    /// Interpolate missing nodes from the nodes around them, after --level
     #[arg(long, help_heading = "Reading the file")]
     fill: bool,
 

@@ -266,7 +266,6 @@ fn a_record_of_another_surface_is_kept() -> Done {
     let folder = Scratch::new("records-kept")?;
     let path = "path --nodes 16 --record path.npz --max-area-fraction";
     printed(&folder.0, &format!("{path} 0.1"))?;
-    printed(&folder.0, &format!("{path} 0.2 --work-of-adhesion 0.05"))?;
     printed(&folder.0, &format!("{path} 0.3"))?;
     let before = fs::read(folder.join("path.npz"))?;
     for other in ["--seed 2", "--side 5mm", "--nodes 32"] {
@@ -282,7 +281,7 @@ fn a_record_of_another_surface_is_kept() -> Done {
         ("--layer gold,2um --base steel", "other bodies"),
         ("--periodic love", "another half-space"),
         ("--hardness 2GPa", "another hardness"),
-        ("--material glass --work-of-adhesion 0.05", "other bodies"),
+        ("--work-of-adhesion 0.05", "another adhesion"),
     ];
     for (other, what) in others {
         let refused = output(&folder.0, &format!("{path} 0.1 {other}"))?;

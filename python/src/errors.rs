@@ -238,6 +238,12 @@ fn describe(error: &Error) -> Described {
             (VALUE, "NotPositiveDefinite", numbers![ix, iy, approach, pivot])
         }
         Error::NotFinite { step } => (VALUE, "NotFinite", numbers![step]),
+        Error::RecordNotFinite { step, quantity, value } => {
+            (VALUE, "RecordNotFinite", numbers![step, quantity, value])
+        }
+        Error::WrongBoundary { expected, found } => {
+            (VALUE, "WrongBoundary", numbers![expected, found])
+        }
         Error::Inconsistent { step, quantity, value, expected, reason } => {
             (VALUE, "Inconsistent", numbers![step, quantity, value, expected, reason])
         }

@@ -34,11 +34,11 @@ fn a_measurement_is_read_filled_levelled_and_described() -> Done {
     );
     let refused = measured.clone().topography();
     assert!(matches!(refused, Err(Error::HeightNotFinite { count: 2, .. })), "{refused:?}");
-    let surface = measured.fill_missing()?.topography()?;
-    let (tilt, _) = surface.trend(Trend::Plane).slopes();
-    // 100 nm − 3 nm y on average in 2 µm, of which filled nodes take a little.
+    let tilted = measured.clone().fill_missing()?.topography()?;
+    let (tilt, _) = measured.trend(Trend::Plane)?.slopes();
+    // 100 nm − 3 nm y on average in 2 µm, of which the missing nodes take a little.
     assert!((tilt / 47e-3 - 1.0).abs() < 0.05, "{tilt}");
-    let levelled = surface.level(Trend::Plane)?;
+    let levelled = measured.level(Trend::Plane)?.fill_missing()?.topography()?;
     let map = levelled.map();
     let statistics = format!(
         "Sq = {:e} m, Sa = {:e} m, Sz = {:e} m, gradient {}",
@@ -48,10 +48,11 @@ fn a_measurement_is_read_filled_levelled_and_described() -> Done {
         levelled.rms_gradient()
     );
     println!("{statistics}");
-    assert!(map.mean_height().abs() < 1e-20, "{statistics}");
-    assert!(map.rms_height() < 0.2 * surface.map().rms_height(), "{statistics}");
+    // That of the measured nodes is 0.
+    assert!(map.mean_height().abs() < 0.01 * map.rms_height(), "{statistics}");
+    assert!(map.rms_height() < 0.2 * tilted.map().rms_height(), "{statistics}");
     assert!(map.mean_absolute_height() <= map.rms_height(), "{statistics}");
-    assert!(levelled.rms_gradient() < surface.rms_gradient(), "{statistics}");
+    assert!(levelled.rms_gradient() < tilted.rms_gradient(), "{statistics}");
     Ok(())
 }
 

@@ -199,10 +199,7 @@ fn print(
     }
     let failed = |error| Failure::new("cannot remove the tilt", error);
     let levelled = whole.filled_flat.level(Trend::Plane).map_err(failed)?;
-    let tilt = map.rms_height().powi(2) - levelled.map().rms_height().powi(2);
-    // What a difference of squares leaves of rounding is no tilt.
-    let tilt = if tilt > 1e-12 * map.rms_height().powi(2) { tilt.sqrt() } else { 0.0 };
-    say!("tilt          {} rms; without it {}", length(tilt), roughness(levelled.map()));
+    say!("tilt          {} rms; without it {}", length(whole.tilt), roughness(levelled.map()));
     let (skewness, kurtosis) = (levelled.map().skewness(), levelled.map().kurtosis());
     // A plane has none.
     if skewness.is_finite() {

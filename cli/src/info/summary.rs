@@ -16,6 +16,8 @@ pub(super) struct Whole {
     pub(super) surface: Topography,
     /// The same for figures without the tilt: holes were filled without it, as they would be tipped with it.
     pub(super) filled_flat: Topography,
+    /// Rms height of its plane \[m\], of the measured nodes alone, continued over all.
+    pub(super) tilt: f64,
     /// Whether the size is known.
     pub(super) has_size: bool,
     /// Heights for the picture, NaN at nodes that are missing and stay so.
@@ -39,6 +41,14 @@ impl Whole {
         };
         let levelled = reading.levelled(measured.clone()).map_err(failed)?;
         let surface = on_grid(levelled.clone()).map_err(failed)?;
+        let (sx, sy) = levelled.trend(Trend::Plane).map_err(failed)?.slopes();
+        let (nx, ny) = surface.grid().shape();
+        let rms = |slope: f64, cell: f64, nodes: usize| {
+            slope * cell * ((nodes * nodes - 1) as f64 / 12.0).sqrt()
+        };
+        let tilt = rms(sx, surface.grid().dx(), nx).hypot(rms(sy, surface.grid().dy(), ny));
+        // What is left of rounding is none.
+        let tilt = if tilt > 1e-6 * surface.map().rms_height() { tilt } else { 0.0 };
         let filled_flat = match measured.missing {
             0 => surface.clone(),
             _ => levelled.level(Trend::Plane).and_then(on_grid).map_err(failed)?,
@@ -51,6 +61,7 @@ impl Whole {
             shown: surface.heights().zip_map(&measured.heights, is_shown),
             surface,
             filled_flat,
+            tilt,
             has_size,
         })
     }

@@ -83,8 +83,13 @@ impl Job {
             Reading::check_row(&surface, options.boundary())?;
         }
         let hardness = hardness(options, &grid)?;
-        let contact = (&bodies, options.periodic, hardness.as_ref());
-        check_kept(options.record.as_deref(), &surface, contact)?;
+        let contact = Contact {
+            bodies: &bodies,
+            periodic: options.periodic,
+            hardness: hardness.as_ref(),
+            law: options.sticking.law(),
+        };
+        check_kept(options.record.as_deref(), &surface, &contact)?;
         Ok(Self {
             name,
             hardness_in_words: options
@@ -142,7 +147,8 @@ impl Job {
             (None, None) => Some(file.to_path_buf()),
         };
         let hardness = record.hardness_map().map_err(failed)?;
-        check_kept(kept.as_deref(), &surface, (&bodies, periodic, hardness.as_ref()))?;
+        let contact = Contact { bodies: &bodies, periodic, hardness: hardness.as_ref(), law: None };
+        check_kept(kept.as_deref(), &surface, &contact)?;
         if let (Some(_), Some(last)) = (passed, record.states().last()) {
             note!(
                 "note: {} continues to {}; the requested target lies before that and is read from it",
@@ -200,12 +206,13 @@ impl Job {
             _ => &[],
         };
         let targets = options.targets(surface.grid(), own);
-        check_kept(options.record.as_deref(), &surface, (&bodies, periodic, None))?;
+        let law = Some(Law::of(record.adhesion()));
+        let contact = Contact { bodies: &bodies, periodic, hardness: None, law };
+        check_kept(options.record.as_deref(), &surface, &contact)?;
         let source = json!({
             "record": file.display().to_string(),
             "heights_md5": fingerprint(&surface),
         });
-        let law = Some(Law::of(record.adhesion()));
         let parts = Parts {
             bodies: &bodies,
             periodic,
@@ -261,8 +268,13 @@ impl Job {
         }
         let mut place = folder.join("interrupted.npz");
         let mut number = 1;
-        let contact = (&self.bodies, self.periodic, self.hardness.as_ref());
-        while check_kept(Some(&place), &self.surface, contact).is_err() {
+        let contact = Contact {
+            bodies: &self.bodies,
+            periodic: self.periodic,
+            hardness: self.hardness.as_ref(),
+            law: self.law,
+        };
+        while check_kept(Some(&place), &self.surface, &contact).is_err() {
             number += 1;
             place = folder.join(format!("interrupted_{number}.npz"));
         }
@@ -566,22 +578,32 @@ fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {
     options.targets(grid, &[ContactTarget::AreaFraction(AREA_FRACTION)])
 }
 
-/// `Ok` unless a file where a record goes has the path of another surface, of other bodies, half-space or hardness: the
-/// work of hours may be in it.
+/// What touches a surface, and how.
+struct Contact<'a> {
+    bodies: &'a Bodies,
+    periodic: Option<Periodic>,
+    hardness: Option<&'a DMatrix<f64>>,
+    law: Option<Law>,
+}
+
+/// `Ok` unless a file where a record goes has the path of another surface, of other bodies, half-space, hardness or
+/// adhesion: the work of hours may be in it.
 fn check_kept(
     file: Option<&Path>,
     surface: &Topography,
-    (bodies, periodic, hardness): (&Bodies, Option<Periodic>, Option<&DMatrix<f64>>),
+    contact: &Contact<'_>,
 ) -> Result<(), Failure> {
+    let &Contact { bodies, periodic, hardness, law } = contact;
     let Some(file) = file.filter(|file| file.is_file()) else { return Ok(()) };
-    let (grid, heights, origin, other_hardness) = match LoadingRecord::read_npz(file) {
+    let (grid, heights, origin, of_law) = match LoadingRecord::read_npz(file) {
         Ok(record) => {
-            let hardness = record.hardness_map();
-            (record.grid(), record.heights().clone(), record.kernel().origin.clone(), hardness)
+            let limit = (record.hardness_map(), None);
+            (record.grid(), record.heights().clone(), record.kernel().origin.clone(), limit)
         }
         Err(_) => match AdhesiveRecord::read_npz(file) {
             Ok(record) => {
-                (record.grid(), record.heights().clone(), record.kernel().origin.clone(), Ok(None))
+                let limit = (Ok(None), Some(record.adhesion()));
+                (record.grid(), record.heights().clone(), record.kernel().origin.clone(), limit)
             }
             // An empty file is a place that somebody has made for the record.
             Err(_) if file.metadata().is_ok_and(|file| file.len() == 0) => return Ok(()),
@@ -593,6 +615,7 @@ fn check_kept(
             }
         },
     };
+    let (other_hardness, adhesion) = of_law;
     // Records count heights from the highest node.
     let shift = surface.map().max_height() - heights.max_height();
     // Far from zero their last bits are no differences.
@@ -613,6 +636,7 @@ fn check_kept(
         () if !other.as_ref().is_some_and(are_same) => "other bodies",
         () if other.is_some_and(|other| other.0 != periodic) => "another half-space",
         () if !other_hardness.is_ok_and(|other| other.as_ref() == hardness) => "another hardness",
+        () if law.map(Law::adhesion) != adhesion => "another adhesion",
         () => return Ok(()),
     };
     Err(Failure::request(format!(

@@ -1,7 +1,6 @@
 //! The path of surfaces that stick.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::task::Poll;
 use std::time::{Duration, Instant};
 
@@ -11,13 +10,13 @@ use asperity::nalgebra::DMatrix;
 use asperity::record::AdhesiveRecord;
 use asperity::{ContactTarget, Error, Grid, Warning};
 use numpy::PyArray2;
+use parking_lot::{Mutex, MutexGuard};
 use pyo3::prelude::*;
-use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
 use super::branch::{AdhesiveBranch, AdhesiveState};
 use crate::arrays::{rows, shape};
-use crate::compute::detached;
+use crate::compute::{detached, locked};
 use crate::errors::{Failure, Fallible};
 use crate::surface::Surface;
 use crate::targets::Targets;
@@ -83,23 +82,22 @@ impl AdhesivePath {
         Self { inner: Mutex::new(Inner { path, states }), grid, e_star }
     }
 
-    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Inner> {
-        // After a panic the engine says itself that it does not go on.
-        self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self, py: Python<'_>) -> Fallible<MutexGuard<'_, Inner>> {
+        locked(py, &self.inner)
     }
 
     /// The rest of the branch: its states from here on.
     fn rest(&self, py: Python<'_>) -> Fallible<AdhesiveBranch> {
-        let begin = self.lock(py).states.states().len();
+        let begin = self.lock(py)?.states.states().len();
         loop {
             let goes_on = {
-                let mut inner = self.lock(py);
+                let mut inner = self.lock(py)?;
                 let inner = &mut *inner;
                 detached(py, || inner.run_for(STRETCH))??
             };
             py.check_signals()?;
             if !goes_on {
-                let inner = self.lock(py);
+                let inner = self.lock(py)?;
                 let branch = inner.states.states()[begin..].iter().copied().collect();
                 return Ok(AdhesiveBranch { branch });
             }
@@ -112,7 +110,7 @@ impl AdhesivePath {
         turn: impl FnOnce(&mut engine::AdhesivePath) -> Result<(), Error> + Send,
     ) -> Fallible<AdhesiveBranch> {
         {
-            let mut inner = self.lock(py);
+            let mut inner = self.lock(py)?;
             let path = &mut inner.path;
             detached(py, || turn(path))??;
         }
@@ -124,7 +122,7 @@ impl AdhesivePath {
         py: Python<'_>,
         state: Option<PyRef<'_, AdhesiveState>>,
     ) -> Fallible<AdhesiveFields> {
-        let inner = self.lock(py);
+        let inner = self.lock(py)?;
         let state = state.map(|state| state.state).or_else(|| inner.path.state());
         let state = state.ok_or_else(|| {
             Failure::arguments("there are no states: iterate the path or call run() first")
@@ -153,7 +151,7 @@ impl AdhesivePath {
     fn __next__(&self, py: Python<'_>) -> Fallible<Option<AdhesiveState>> {
         loop {
             let next = {
-                let mut inner = self.lock(py);
+                let mut inner = self.lock(py)?;
                 let inner = &mut *inner;
                 detached(py, || inner.next(Instant::now() + STRETCH))??
             };
@@ -237,31 +235,31 @@ impl AdhesivePath {
 
     /// All states so far, on all branches.
     #[getter]
-    fn states(&self, py: Python<'_>) -> AdhesiveBranch {
-        AdhesiveBranch { branch: self.lock(py).states.clone() }
+    fn states(&self, py: Python<'_>) -> Fallible<AdhesiveBranch> {
+        Ok(AdhesiveBranch { branch: self.lock(py)?.states.clone() })
     }
 
     /// The last state so far, None before the first.
     #[getter]
-    fn state(&self, py: Python<'_>) -> Option<AdhesiveState> {
-        self.lock(py).path.state().map(|state| AdhesiveState { state })
+    fn state(&self, py: Python<'_>) -> Fallible<Option<AdhesiveState>> {
+        Ok(self.lock(py)?.path.state().map(|state| AdhesiveState { state }))
     }
 
     /// Why the branch has ended, None while there is more to come: ``"target"``, ``"no more events"`` or ``"failed"``.
     #[getter]
-    fn end(&self, py: Python<'_>) -> Option<&'static str> {
-        self.lock(py).path.end().map(|end| match end {
+    fn end(&self, py: Python<'_>) -> Fallible<Option<&'static str>> {
+        Ok(self.lock(py)?.path.end().map(|end| match end {
             AdhesiveEnd::Target => "target",
             AdhesiveEnd::NoMoreEvents => "no more events",
             _ => "failed",
-        })
+        }))
     }
 
     /// The law on these cells: ``work`` [J/m²], ``stress`` [Pa], ``flat_range`` and ``range`` [m], and ``resolution``, the slope
     /// times the compliance of a cell.
     #[getter]
     fn law<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyDict>> {
-        let law = self.lock(py).path.law();
+        let law = self.lock(py)?.path.law();
         let numbers = [
             ("work", law.work()),
             ("stress", law.stress()),
@@ -297,7 +295,7 @@ impl AdhesivePath {
     /// The surface, with heights [m] from its highest node.
     #[getter]
     fn surface(&self, py: Python<'_>) -> Fallible<Surface> {
-        let inner = self.lock(py);
+        let inner = self.lock(py)?;
         let heights = inner.path.problem().initial_gap().iter().map(|gap| -gap);
         let (nx, ny) = self.grid.shape();
         Ok(Surface::new(self.grid, DMatrix::from_iterator(nx, ny, heights))?)
@@ -386,18 +384,18 @@ impl AdhesivePath {
     /// path : str or os.PathLike
     ///     A ``.npz`` file. It has this name only when it is whole.
     fn save(&self, py: Python<'_>, path: PathBuf) -> Fallible<()> {
-        let inner = self.lock(py);
+        let inner = self.lock(py)?;
         let inner = &*inner;
         Ok(detached(py, || {
             AdhesiveRecord::new(&inner.path, inner.states.clone())?.write_npz(path, &[])
         })??)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
-        let inner = self.lock(py);
+    fn __repr__(&self, py: Python<'_>) -> Fallible<String> {
+        let inner = self.lock(py)?;
         let (rows, columns) = shape(&self.grid);
         let states = inner.states.states().len();
-        format!("<AdhesivePath: {states} states on {rows} x {columns} rows and columns>")
+        Ok(format!("<AdhesivePath: {states} states on {rows} x {columns} rows and columns>"))
     }
 }
 
