@@ -393,6 +393,25 @@ def test_a_record_of_a_path_under_way_goes_on(rough: asp.Surface, body: asp.Half
     assert len(opened.run(check=False)) == 409 and opened.end == "area fraction"
 
 
+def test_records_with_numbers_that_no_state_has(rough: asp.Surface, body: asp.HalfSpace, tmp_path: Path) -> None:
+    path = asp.load_path(rough, body, nodes=30, check=False)
+    path.run(check=False)
+    path.save(tmp_path / "whole.npz")
+    members = dict(np.load(tmp_path / "whole.npz"))
+    load = members["load"].copy()
+    load[20] = np.nan
+    np.savez(tmp_path / "load.npz", **{**members, "load": load})
+    with pytest.raises(asp.AsperityError, match="at step 21 the load is NaN") as refused:
+        asp.open(tmp_path / "load.npz")
+    assert (refused.value.kind, refused.value.step, refused.value.quantity) == ("RecordNotFinite", 21, "load")
+    own = "Periodic" if body.is_periodic else "Free"
+    parameters = str(members["parameters"]).replace(f'"boundary":"{own}"', '"boundary":"PeriodicX"')
+    np.savez(tmp_path / "boundary.npz", **{**members, "parameters": np.array(parameters)})
+    with pytest.raises(asp.AsperityError, match="its boundary is PeriodicX") as other:
+        asp.open(tmp_path / "boundary.npz")
+    assert (other.value.kind, other.value.expected, other.value.found) == ("WrongBoundary", own, "PeriodicX")
+
+
 def test_files_that_are_no_records(tmp_path: Path, rough: asp.Surface, body: asp.HalfSpace) -> None:
     with pytest.raises(FileNotFoundError):
         asp.open(tmp_path / "nothing.npz")
