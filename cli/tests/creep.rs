@@ -393,6 +393,22 @@ fn small_cycles_are_linear() -> Done {
     Ok(())
 }
 
+/// Slow cycles press twice as hard as the bodies have once relaxed: beyond the end of this path.
+#[test]
+fn cycles_beyond_the_path_are_said_with_the_load_that_they_need() -> Done {
+    let (folder, _, end) = with_long_record("creep-beyond")?;
+    let line = format!(
+        "creep path.npz --prony 1,0.5 --load {:e} --cycle-amplitude {:e} --time 1",
+        0.4 * end,
+        0.2 * end
+    );
+    let words = run(&folder.0, &line)?;
+    let needed = words.split("slow ones need the path up to ").nth(1).ok_or("not said")?;
+    let needed: f64 = needed.split(' ').next().ok_or("no number")?.parse()?;
+    assert!(is_near(needed, 1.2 * end, 1e-3) && needed >= 1.2 * end, "{needed} {end}");
+    Ok(())
+}
+
 /// Contact that recedes is stepped; a table of approach relaxes.
 #[test]
 fn histories_from_files() -> Done {

@@ -1,8 +1,8 @@
 //! What is printed.
 
 use asperity::creep::{ControlHistory, CreepState};
-use asperity::{CreepError, Error};
-use asperity_cli::number::{quantity, significant};
+use asperity::{BedError, CreepError, Error};
+use asperity_cli::number::{at_least, quantity, significant};
 use asperity_cli::{say, speech, units};
 
 use super::Options;
@@ -150,6 +150,12 @@ fn cycles(sweep: &Result<Sweep, Error>) {
         Err(Error::Creep(CreepError::NoSteadyCycle { .. })) => {
             say!("cycles     none are steady, for the bodies flow");
         }
+        // Slow cycles press as an elastic body that has relaxed.
+        Err(Error::Bed(BedError::PathEndsBefore { quantity: "load", value, end })) => say!(
+            "cycles     not drawn: slow ones need the path up to {} N, and it ends at {}: continue it with --max-load, or take a smaller --cycle-amplitude",
+            at_least(*value, 4),
+            quantity(*end, "N", 4)
+        ),
         Err(error) => say!("cycles     not drawn: {error}"),
     }
 }
