@@ -55,9 +55,9 @@ pub struct Adhesion {
 
 impl Adhesion {
     /// No adhesion at w = 0: the states of the path without it, of bodies whose contact grows, between first touch and
-    /// full contact, where branches end whatever target is further. Otherwise a triangle,
-    /// h₁ = 0, of this work of adhesion w \[J/m²\]. Unless a [`range`](Self::range) is given it is as short as the cells
-    /// of the path resolve, k C(0,0) = 0.45: the limit of JKR as far as this mesh goes.
+    /// full contact, where branches end whatever target is further. Otherwise a triangle, h₁ = 0, of this work of
+    /// adhesion w \[J/m²\]. Unless a [`range`](Self::range) is given it is as short as the cells of the path resolve,
+    /// k C(0,0) = 0.45: the limit of JKR as far as this mesh goes.
     #[must_use]
     pub fn work(work: f64) -> Self {
         Self { work, stress: None, range: None }

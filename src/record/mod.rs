@@ -165,9 +165,10 @@ impl LoadingRecord {
     /// # Errors
     ///
     /// [`Error::GridMismatch`] for heights of another grid; [`Error::WrongBoundary`] for surroundings that the kernel
-    /// does not have; [`Error::RecordNotFinite`] for a state with a scalar that no state has; [`Error::NotOnPath`], [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and
-    /// [`Error::NotInContact`] for states that are in no order of a path; [`Error::Inconsistent`] for a number of a
-    /// state that does not follow from the states before, which have the rates of all that changes between two events.
+    /// does not have; [`Error::RecordNotFinite`] for a state with a scalar that no state has; [`Error::NotOnPath`],
+    /// [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for states that are in no order
+    /// of a path; [`Error::Inconsistent`] for a number of a state that does not follow from the states before, which
+    /// have the rates of all that changes between two events.
     pub fn from_parts(
         grid: Grid,
         heights: HeightMap,

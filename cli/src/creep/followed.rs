@@ -82,23 +82,23 @@ impl<'a> Followed<'a> {
 
     fn along(bed: &'a Bed<'a>, task: &Task) -> Result<Self, Error> {
         let times = task.steps.times(&task.prony, task.course.corners(), task.end)?;
-        let (solution, recedes, knots, last) = match &task.course {
+        let (solution, recedes, knots) = match &task.course {
             ControlHistory::Load(load) => {
                 let creep = Creep::new(bed, &task.prony, load)?;
                 let recedes = creep.recession().map(|recession| recession.time);
-                let (knots, last) = (creep.times(), creep.at(task.end));
-                (Solution::Creep(creep), recedes, knots, last)
+                let recedes =
+                    recedes.filter(|time| *time < task.end || has_receded(creep.at(task.end)));
+                let knots = creep.times();
+                (Solution::Creep(creep), recedes, knots)
             }
             ControlHistory::Approach(approach) => {
                 let relaxation = Relaxation::new(bed, &task.prony, approach)?;
                 let (recedes, knots) = (relaxation.recession(), relaxation.times());
-                let last = relaxation.at(task.end);
-                (Solution::Relaxation(relaxation), recedes, knots, last)
+                let recedes =
+                    recedes.filter(|time| *time < task.end || has_receded(relaxation.at(task.end)));
+                (Solution::Relaxation(relaxation), recedes, knots)
             }
         };
-        // Where contact falls at once, it has receded at that time already.
-        let has_receded = matches!(last, Err(Error::Creep(CreepError::ContactRecedes { .. })));
-        let recedes = recedes.filter(|time| *time < task.end || has_receded);
         if recedes.is_some() {
             return Self::stepped(bed, task, &times, (recedes, knots));
         }
@@ -255,6 +255,11 @@ impl<'a> Followed<'a> {
         let pressure = pressure.pressure(bed, &mut path)?;
         Ok(vec![("pressure", pressure), ("gap", gap)])
     }
+}
+
+/// Whether contact has receded at a time, as it has where the load falls at once.
+fn has_receded(state: Result<CreepState, Error>) -> bool {
+    matches!(state, Err(Error::Creep(CreepError::ContactRecedes { .. })))
 }
 
 /// The approach of the mean planes in full contact, if the path is there.

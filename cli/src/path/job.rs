@@ -595,15 +595,15 @@ fn check_kept(
 ) -> Result<(), Failure> {
     let &Contact { bodies, periodic, hardness, law } = contact;
     let Some(file) = file.filter(|file| file.is_file()) else { return Ok(()) };
-    let (grid, heights, origin, of_law) = match LoadingRecord::read_npz(file) {
+    let (grid, heights, origin, (other_hardness, adhesion)) = match LoadingRecord::read_npz(file) {
         Ok(record) => {
-            let limit = (record.hardness_map(), None);
-            (record.grid(), record.heights().clone(), record.kernel().origin.clone(), limit)
+            let bears = (record.hardness_map(), None);
+            (record.grid(), record.heights().clone(), record.kernel().origin.clone(), bears)
         }
         Err(_) => match AdhesiveRecord::read_npz(file) {
             Ok(record) => {
-                let limit = (Ok(None), Some(record.adhesion()));
-                (record.grid(), record.heights().clone(), record.kernel().origin.clone(), limit)
+                let bears = (Ok(None), Some(record.adhesion()));
+                (record.grid(), record.heights().clone(), record.kernel().origin.clone(), bears)
             }
             // An empty file is a place that somebody has made for the record.
             Err(_) if file.metadata().is_ok_and(|file| file.len() == 0) => return Ok(()),
@@ -615,7 +615,6 @@ fn check_kept(
             }
         },
     };
-    let (other_hardness, adhesion) = of_law;
     // Records count heights from the highest node.
     let shift = surface.map().max_height() - heights.max_height();
     // Far from zero their last bits are no differences.
