@@ -269,7 +269,11 @@ impl Trial<'_> {
         let rounding = 64.0 * f64::EPSILON * last * approach;
         let force = coefficient * (SNAPPED * load + rounding + UNDERFLOWS) * steps;
         let deviation = 2.0 * steps * coefficient * self.springs.deviation;
-        let displacement = ratio * (force / first + deviation) + UNDERFLOWS;
+        // A small load may be a part of the first interval that is no normal number: it is rounded, at both ends of
+        // pieces, to multiples of the least one.
+        let slip = ratio * coefficient * self.springs.first_approach();
+        let part = 2.0 * steps * f64::from_bits(1) * slip;
+        let displacement = ratio * (force / first + deviation) + UNDERFLOWS + part;
         let energy = coefficient * load * displacement + force * ratio * coefficient * approach;
         // Energies underflow where loads and displacements do not, and those of the path before κμ² multiplies them.
         let least = f64::MIN_POSITIVE * (1.0 + ratio * coefficient.powi(2));

@@ -115,6 +115,11 @@ impl Springs {
         self.knots.last().map_or(0.0, |knot| knot.1)
     }
 
+    /// The approach at the end of the first interval.
+    pub(crate) fn first_approach(&self) -> f64 {
+        self.knots.get(1).map_or(0.0, |knot| knot.0)
+    }
+
     /// The stiffness at first, and below a load.
     pub(crate) fn stiffnesses(&self, load: f64) -> [f64; 2] {
         let reached = self.springs.iter().zip(&self.knots).filter(|(_, knot)| knot.1 < load);

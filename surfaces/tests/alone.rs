@@ -38,7 +38,10 @@ fn a_measurement_is_read_filled_levelled_and_described() -> Done {
     let (tilt, _) = measured.trend(Trend::Plane)?.slopes();
     // 100 nm − 3 nm y on average in 2 µm, of which the missing nodes take a little.
     assert!((tilt / 47e-3 - 1.0).abs() < 0.05, "{tilt}");
-    let levelled = measured.level(Trend::Plane)?.fill_missing()?.topography()?;
+    let level = measured.level(Trend::Plane)?;
+    let known = level.heights.iter().filter(|height| height.is_finite());
+    let sum: f64 = known.sum();
+    let levelled = level.fill_missing()?.topography()?;
     let map = levelled.map();
     let statistics = format!(
         "Sq = {:e} m, Sa = {:e} m, Sz = {:e} m, gradient {}",
@@ -48,8 +51,10 @@ fn a_measurement_is_read_filled_levelled_and_described() -> Done {
         levelled.rms_gradient()
     );
     println!("{statistics}");
-    // That of the measured nodes is 0.
-    assert!(map.mean_height().abs() < 0.01 * map.rms_height(), "{statistics}");
+    // Heights of 0.3 µm and their sums, rounded: 33 nodes, 2⁻⁵² of each. What is filled in moves the mean by no more
+    // than the two nodes that are, at the highest or lowest measured one.
+    assert!(sum.abs() < 1e-18, "{sum:e}: {statistics}");
+    assert!(map.mean_height().abs() < 2.0 / 35.0 * map.peak_to_valley(), "{statistics}");
     assert!(map.rms_height() < 0.2 * tilted.map().rms_height(), "{statistics}");
     assert!(map.mean_absolute_height() <= map.rms_height(), "{statistics}");
     assert!(levelled.rms_gradient() < tilted.rms_gradient(), "{statistics}");
