@@ -469,6 +469,9 @@ fn histories_begin_at_any_time() -> Done {
             }
         }
     }
+    let times = |from: i64| fs::read(folder.join(&format!("{from}/touch_times.png")));
+    assert_eq!(times(-50)?, times(-60)?);
+    assert_eq!(times(-50)?, times(-20)?);
     Ok(())
 }
 

@@ -1,4 +1,5 @@
-//! `touch_times.png`: when each node touched, which is every contact map of growing contact in one.
+//! `touch_times.png`: how long after the beginning each node touched, which is every contact map of growing contact in
+//! one.
 
 use std::path::{Path, PathBuf};
 
@@ -19,10 +20,11 @@ pub(super) fn draw(
     directory: &Path,
 ) -> Option<Result<PathBuf, Failure>> {
     let grid = record.grid();
+    let begin = followed.states.first()?.time;
     let mut times = DMatrix::from_element(grid.nx(), grid.ny(), f64::NAN);
     for (state, time) in record.states().iter().zip(&followed.times) {
         if state.event == ContactEvent::Touch {
-            times[state.node] = *time;
+            times[state.node] = time - begin;
         }
     }
     let touched = times.iter().filter(|time| !time.is_nan()).count();
@@ -47,7 +49,7 @@ pub(super) fn draw(
         range: (first, last),
         scale: Scale::Logarithmic,
         contours: &[],
-        label: ("time at which the node touched", "s"),
+        label: ("time until the node touched", "s"),
     };
     Some(map.write(&directory.join("touch_times.png"), &caption))
 }
