@@ -1,6 +1,6 @@
 //! Arguments of several types.
 
-use pyo3::exceptions::{PyOverflowError, PyTypeError};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::errors::Failure;
@@ -13,8 +13,10 @@ macro_rules! one_of {
             type Error = pyo3::PyErr;
 
             fn extract(given: pyo3::Borrowed<'a, 'py, pyo3::PyAny>) -> Result<Self, pyo3::PyErr> {
-                $(if let Ok(found) = given.extract() {
-                    return Ok(Self::$variant(found));
+                $(match given.extract().map_err(Into::into) {
+                    Ok(found) => return Ok(Self::$variant(found)),
+                    Err(error) if !$crate::argument::is_of_type(&error, &given) => return Err(error),
+                    Err(_) => {}
                 })+
                 Err($crate::argument::not_one(&given, $expected))
             }
@@ -22,6 +24,12 @@ macro_rules! one_of {
     };
 }
 pub(crate) use one_of;
+
+/// Whether an argument was refused for its type or length, and not by itself or for its size.
+pub(crate) fn is_of_type(error: &PyErr, given: &Bound<'_, PyAny>) -> bool {
+    error.is_instance_of::<PyTypeError>(given.py())
+        || error.is_instance_of::<PyValueError>(given.py())
+}
 
 /// That an argument is not what was expected.
 pub(crate) fn not_one(given: &Bound<'_, PyAny>, expected: &str) -> PyErr {

@@ -4,6 +4,7 @@ use asperity::Boundary;
 use asperity::kernel::Layering;
 use asperity::patches::Connectivity;
 use asperity::surface::{Axis, Filter, Interpolation, Trend};
+use pyo3::IntoPyObject;
 
 use crate::argument::one_of;
 use crate::errors::{Failure, Fallible};
@@ -38,6 +39,7 @@ pub(crate) const LAYERINGS: [(&str, Layering); 5] = [
 ];
 
 /// Whether a map repeats with its sides, or the side along which it does.
+#[derive(IntoPyObject)]
 pub(crate) enum Repeats {
     Sides(bool),
     Along(String),
@@ -45,6 +47,14 @@ pub(crate) enum Repeats {
 one_of!(Repeats, "True, False, 'x' or 'y'", Sides, Along);
 
 impl Repeats {
+    pub(crate) fn of(boundary: Boundary) -> Self {
+        match boundary {
+            Boundary::Free => Self::Sides(false),
+            Boundary::Periodic => Self::Sides(true),
+            _ => Self::Along(word(&BOUNDARIES, &boundary).to_string()),
+        }
+    }
+
     pub(crate) fn boundary(&self) -> Fallible<Boundary> {
         match self {
             Self::Sides(false) => Ok(Boundary::Free),

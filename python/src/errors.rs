@@ -82,7 +82,7 @@ impl From<Failure> for PyErr {
             Failure::Python(error) => return error,
             Failure::Engine(error) => {
                 let (class, kind, numbers) = describe(&error);
-                (class, kind, message(&error), numbers)
+                (class, kind, message(&error, &numbers), numbers)
             }
             Failure::Array { message, numbers } => ("ArrayError", "Array", message, numbers),
             Failure::Arguments(message) => ("AsperityError", "Arguments", message, Vec::new()),
@@ -115,6 +115,8 @@ fn raise(
         match name {
             "ix" => attributes.set_item("column", number.clone())?,
             "iy" => attributes.set_item("row", number.clone())?,
+            "nx" => attributes.set_item("columns", number.clone())?,
+            "ny" => attributes.set_item("rows", number.clone())?,
             _ => {}
         }
         attributes.set_item(name, number)?;
@@ -123,21 +125,34 @@ fn raise(
     Ok(PyErr::from_value(class.call((message,), Some(&attributes))?))
 }
 
-/// What an error says.
-fn message(error: &Error) -> String {
-    match *error {
-        // As arrays are.
-        Error::GridMismatch { expected, found } => format!(
+/// What an error says: of nodes and grids by rows and columns, as arrays have them.
+fn message(error: &Error, numbers: &Numbers) -> String {
+    if let Error::GridMismatch { expected, found } = *error {
+        return format!(
             "expected {} rows x {} columns, but found {} x {}",
             expected.1, expected.0, found.1, found.0
-        ),
-        _ => in_python(&error.to_string()),
+        );
     }
+    let text = in_python(&error.to_string());
+    let count = |wanted: &str| {
+        numbers.iter().find_map(|(name, number)| match number {
+            Number::Count(count) if *name == wanted => Some(*count),
+            _ => None,
+        })
+    };
+    if let (Some(ix), Some(iy)) = (count("ix"), count("iy")) {
+        return text
+            .replace(&format!("node ({ix}, {iy})"), &format!("the node in row {iy}, column {ix}"));
+    }
+    if let (Some(nx), Some(ny)) = (count("nx"), count("ny")) {
+        return text.replace(&format!("{nx} x {ny}"), &format!("{ny} x {nx} (rows x columns)"));
+    }
+    text
 }
 
 /// Words of the library in those of this package.
 pub(crate) fn in_python(text: &str) -> String {
-    const WORDS: [(&str, &str); 13] = [
+    const WORDS: [(&str, &str); 14] = [
         ("`surface::fill_missing`", "`Surface.fill_missing()`"),
         ("`ReadOptions::height_unit`", "`height_unit=`"),
         ("`ReadOptions::lateral_unit`", "`lateral_unit=`"),
@@ -149,6 +164,7 @@ pub(crate) fn in_python(text: &str) -> String {
         ("`AdhesiveRecord` reads it", "`asperity.open` reads it"),
         ("`kernel::check`", "`check_half_space`"),
         ("The model is elastic", "The model is elastic unless a `hardness=` is given"),
+        ("of this crate", "of this package"),
         ("it has to be given", "it has to be given, as `half_space=`"),
         ("step the bed through it", "`Creep.follow` steps through it"),
     ];
@@ -491,8 +507,9 @@ fn of_file(error: &FileError) -> Described {
             let filename = path;
             let mut numbers = numbers![filename];
             if let Some(errno) = source.raw_os_error() {
+                let text = source.to_string().replace(&format!(" (os error {errno})"), "");
                 numbers.push(("errno", Number::Offset(errno as isize)));
-                numbers.push(("strerror", Number::Text(source.to_string())));
+                numbers.push(("strerror", Number::Text(text)));
             }
             (class, "Io", numbers)
         }

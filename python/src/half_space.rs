@@ -13,7 +13,7 @@ use pyo3::{PyTraverseError, PyVisit};
 
 use crate::argument::one_of;
 use crate::arrays::{Found, Kind, column};
-use crate::choice::{BOUNDARIES, choose, word};
+use crate::choice::{BOUNDARIES, Repeats, choose, word};
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
 use crate::materials;
@@ -429,10 +429,10 @@ impl HalfSpace {
         }
     }
 
-    /// Whether surface and body repeat with both sides of the grid.
+    /// Whether surface and body repeat with the sides of the grid, or ``"x"`` or ``"y"`` if they do along one.
     #[getter]
-    fn is_periodic(&self) -> bool {
-        self.surroundings() == Boundary::Periodic
+    fn periodic(&self) -> Repeats {
+        Repeats::of(self.surroundings())
     }
 
     /// Sum of the thicknesses of all layers [m]; None without layers.

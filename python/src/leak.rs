@@ -217,7 +217,17 @@ impl Seal {
 
     fn __repr__(&self) -> String {
         let (viscosity, drop) = (self.viscosity(), self.pressure_drop());
-        format!("Seal(viscosity={viscosity:?}, pressure_drop={drop:?}, along='{}')", self.along())
+        let mut text = format!(
+            "Seal(viscosity={viscosity:?}, pressure_drop={drop:?}, along='{}'",
+            self.along()
+        );
+        if self.least_gap() > 0.0 {
+            text += &format!(", least_gap={:?}", self.least_gap());
+        }
+        if let Some(outlet) = self.outlet_pressure() {
+            text += &format!(", outlet_pressure={outlet:?}");
+        }
+        text + ")"
     }
 }
 

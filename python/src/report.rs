@@ -43,10 +43,10 @@ impl Report {
     ///
     /// Parameters
     /// ----------
-    /// file : str or os.PathLike
+    /// path : str or os.PathLike
     ///     Its name; it should end in ``.html``.
-    fn save(&self, file: PathBuf) -> Fallible<()> {
-        write_whole(&file, |output| output.write_all(self.html.as_bytes()))
+    fn save(&self, path: PathBuf) -> Fallible<()> {
+        write_whole(&path, |output| output.write_all(self.html.as_bytes()))
             .map_err(|error| Error::from(error).into())
     }
 

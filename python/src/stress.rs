@@ -312,7 +312,7 @@ impl Stress {
     ///
     /// Parameters
     /// ----------
-    /// file : path-like
+    /// path : str or os.PathLike
     /// step : float
     ///     Distance of depths [m].
     /// count : int
@@ -320,11 +320,11 @@ impl Stress {
     fn write_volume(
         &self,
         py: Python<'_>,
-        file: PathBuf,
+        path: PathBuf,
         step: f64,
         #[pyo3(from_py_with = whole)] count: usize,
     ) -> Fallible<()> {
-        let write = || self.below.write_volume(&self.pressure, (step, count), &file, |_| ());
+        let write = || self.below.write_volume(&self.pressure, (step, count), &path, |_| ());
         Ok(detached(py, write)??)
     }
 

@@ -207,6 +207,41 @@ def test_topographies_that_are_not_all_there() -> None:
             raise KeyError("no heights")
     with pytest.raises(KeyError):
         asp.Surface(Raises())
+    class Unreadable(Odd):
+        def __init__(self) -> None: ...
+        @property
+        def unit(self) -> str:  # type: ignore[override]
+            raise RuntimeError("metadata")
+    with pytest.raises(RuntimeError, match="metadata"):
+        asp.Surface(Unreadable())
+
+
+def test_errors_name_rows_and_columns() -> None:
+    z = np.zeros((12, 16))
+    z[2, 5] = np.nan
+    with pytest.raises(asp.AsperityError, match="the first at the node in row 2, column 5;") as refused:
+        _ = asp.Surface(z, 1.0).sq
+    assert (refused.value.row, refused.value.column) == (2, 5)
+    gap, apart = np.where(np.isnan(z), np.nan, 1e-6), np.zeros(z.shape, bool)
+    with pytest.raises(asp.AsperityError, match="the gap at the node in row 2, column 5 is NaN"):
+        asp.Seal(1e-3, 1e5, "x").leak_of(gap, apart, 1.0, periodic=False)
+    with pytest.raises(asp.AsperityError, match=r"a grid of 0 x 5 \(rows x columns\) nodes is empty") as empty:
+        asp.Surface(np.zeros((0, 5)), 1.0)
+    assert (empty.value.rows, empty.value.columns) == (0, 5)
+    with pytest.raises(asp.AsperityError, match=r"a grid of 3 x 40000 \(rows x columns\) nodes is too large"):
+        asp.Surface(np.zeros((4, 4)), 1.0).resample((3, 40000))
+
+
+def test_errors_of_arguments_are_their_own() -> None:
+    class Bad:
+        def __float__(self) -> float:
+            raise RuntimeError("mine")
+    with pytest.raises(RuntimeError, match="mine"):
+        asp.Surface(INTEGERS, Bad())  # type: ignore[arg-type]
+    with pytest.raises(OverflowError):
+        asp.Surface(INTEGERS, 10**400)
+    with pytest.raises(TypeError, match="a number or"):
+        asp.Surface(INTEGERS, "1 mm")  # type: ignore[arg-type]
 
 
 def test_pieces_and_sums_of_periodic_surfaces() -> None:

@@ -134,7 +134,7 @@ def test_relaxation_at_an_approach(path: asp.LoadingPath) -> None:
     # The state of the path is that of first touch, through which less leaks than through the gap of the time.
     seal, nowhere = asp.Seal(1e-3, 1e5, along="x"), np.zeros(path.shape, dtype=bool)
     assert lifted.path_state(1.0) == path.history[0]
-    apart = seal.leak_of(lifted.gap(1.0), nowhere, path.size, periodic=path.is_periodic)
+    apart = seal.leak_of(lifted.gap(1.0), nowhere, path.size, periodic=path.periodic)
     assert apart.leak_rate > seal.leak(path, lifted.path_state(1.0), check=False).leak_rate
 
 

@@ -21,7 +21,7 @@ def test_compliance() -> None:
     """A layer on a rigid base, with Poisson's ratio 1/2: u / p = 2 (sinh 2x - 2x) / (cosh 2x + 1 + 2x²) / (E* q)."""
     thickness = 1e-3
     body = asp.HalfSpace.layered([(3e6, 0.5, thickness)], "rigid", "love")
-    assert body.e_star == 4e6 and body.thickness == thickness and body.is_periodic and body.boundary == "love"
+    assert body.e_star == 4e6 and body.thickness == thickness and body.periodic is True and body.boundary == "love"
     for x in (0.3, 1.0, 4.0):
         q = x / thickness
         closed = 2.0 / (4e6 * q) * (np.sinh(2 * x) - 2 * x) / (np.cosh(2 * x) + 1 + 2 * x**2)

@@ -23,6 +23,7 @@ def test_a_uniform_gap() -> None:
     for along, shape in (("x", 2e-3 / 3e-3), ("y", 3e-3 / 2e-3)):
         seal = asp.Seal(1e-3, 1e5, along=along)
         assert (seal.viscosity, seal.pressure_drop, seal.along) == (1e-3, 1e5, along)
+        assert repr(seal) == f"Seal(viscosity=0.001, pressure_drop=100000.0, along='{along}')"
         for periodic in (False, True):
             leak = seal.leak_of(gap, contact, (3e-3, 2e-3), periodic=periodic)
             assert leak.leak_rate == pytest.approx((2e-6) ** 3 / 12e-3 * 1e5 * shape, rel=1e-9)
@@ -56,6 +57,7 @@ def test_gases() -> None:
     liquid = asp.Seal(1e-3, 1e5, along="x").leak_of(gap, contact, (3e-3, 2e-3), periodic=False)
     seal = asp.Seal(1e-3, 1e5, along="x", outlet_pressure=2.5e4)
     assert seal.outlet_pressure == 2.5e4
+    assert repr(seal) == "Seal(viscosity=0.001, pressure_drop=100000.0, along='x', outlet_pressure=25000.0)"
     gas = seal.leak_of(gap, contact, (3e-3, 2e-3), periodic=False)
     assert gas.leak_rate == pytest.approx(liquid.leak_rate * (1.25e5 + 2.5e4) / 5e4, rel=1e-9)
     # Above that of the outlet, in the middle of each cell.

@@ -50,7 +50,7 @@ def test_a_symbol_of_the_engine(small: asp.Surface) -> None:
     np.testing.assert_allclose(found.load, expected.load, rtol=1e-9, atol=1e-12 * expected.load.max())
     unknown = asp.load_path(small, asp.HalfSpace.from_symbol(spectral), area_fraction=0.1, check=False)
     np.testing.assert_array_equal(unknown.run(check=False).row, expected.row[: int(0.1 * 1024)])
-    assert own.boundary == "symbol" and own.is_periodic and own.e_star == 1e9
+    assert own.boundary == "symbol" and own.periodic is True and own.e_star == 1e9
     report = asp.check_half_space(small, own)
     assert report.promised_growth == "monotone" and report.least_symbol is not None
 
@@ -123,7 +123,7 @@ def test_coefficients(small: asp.Surface) -> None:
     path = asp.load_path(small, own, area_fraction=0.3, check=False)
     known = asp.load_path(small, asp.HalfSpace(1e9, boundary="free"), area_fraction=0.3, check=False)
     assert path.run(check=False) == known.run(check=False)
-    assert not own.is_periodic and own.boundary == "coefficients"
+    assert own.periodic is False and own.boundary == "coefficients"
     # One number for all is broadcast: a body that sinks as a whole, on which no second node ever touches.
     flat = asp.load_path(small, asp.HalfSpace.from_coefficients(lambda di, dj: 1e-15, boundary="free"), check=False)
     assert len(flat.run(check=False)) == 1 and flat.end == "no more events"

@@ -227,7 +227,7 @@ def test_numbers_that_no_count_can_be(rough: asp.Surface, body: asp.HalfSpace) -
 @pytest.mark.parametrize("body", [asp.HalfSpace(1e6, boundary="love"), asp.HalfSpace(1e6, boundary="free")])
 def test_states_behind_full_contact(body: asp.HalfSpace, tmp_path: Path) -> None:
     """They have fields: of waves that are pressed flat, and of a flat punch, all in contact from the beginning."""
-    is_flat = not body.is_periodic
+    is_flat = body.periodic is False
     surface = asp.wave(1e-6, (1e-3, 1e-3), (16, 16), 1e-3)
     if is_flat:
         surface = asp.Surface(np.zeros((16, 16)), 1e-3)
@@ -404,7 +404,7 @@ def test_records_with_numbers_that_no_state_has(rough: asp.Surface, body: asp.Ha
     with pytest.raises(asp.AsperityError, match="at step 21 the load is NaN") as refused:
         asp.open(tmp_path / "load.npz")
     assert (refused.value.kind, refused.value.step, refused.value.quantity) == ("RecordNotFinite", 21, "load")
-    own = "Periodic" if body.is_periodic else "Free"
+    own = "Periodic" if body.periodic is True else "Free"
     parameters = str(members["parameters"]).replace(f'"boundary":"{own}"', '"boundary":"PeriodicX"')
     np.savez(tmp_path / "boundary.npz", **{**members, "parameters": np.array(parameters)})
     with pytest.raises(asp.AsperityError, match="its boundary is PeriodicX") as other:

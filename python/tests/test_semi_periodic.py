@@ -19,7 +19,7 @@ SIDES = {"x": 1, "y": 0}
 def test_the_half_space_repeats_along_its_side_alone(side: str) -> None:
     surface = measured("periodic_32x24", SIZE)
     body = asp.HalfSpace(1.0, boundary=side)
-    assert body.boundary == side and not body.is_periodic and repr(body) == f"HalfSpace(e_star=1.0, boundary='{side}')"
+    assert body.boundary == side and body.periodic == side and repr(body) == f"HalfSpace(e_star=1.0, boundary='{side}')"
     one = asp.solve(surface, body, load=1e-9, tolerance=1e-12, check=False)
     for name, axis in SIDES.items():
         moved = asp.Surface(np.roll(surface.z, 5, axis=axis), size=SIZE)
@@ -38,16 +38,23 @@ def test_it_is_pickled_and_recorded(side: str, tmp_path) -> None:  # type: ignor
     path = asp.load_path(surface, body, area_fraction=0.3, check=False)
     history = path.run(check=False)
     assert pickle.loads(pickle.dumps(history)) == history
+    # Edges are closed where the map does not repeat.
+    seal = asp.Seal(1e-3, 1e-6, "y" if side == "x" else "x")
+    gap, contact = path.gap(), path.contact_map()
+    of_map = seal.leak_of(gap, contact, path.size, periodic=path.periodic)
+    assert of_map.leak_rate == seal.leak(path).leak_rate
+    assert seal.leak_of(gap, contact, path.size, periodic=False).leak_rate < of_map.leak_rate
     solution = asp.solve(surface, body, area_fraction=0.2, check=False)
     again = pickle.loads(pickle.dumps(solution))
     np.testing.assert_array_equal(again.pressure, solution.pressure)
     # Patches of what was pickled go around the side that repeats, and around no other.
     contact = history.at(area_fraction=0.3)
-    expected = asp.label_patches(path.contact_map(contact), SIZE, periodic=side)  # type: ignore[arg-type]
+    expected = asp.label_patches(path.contact_map(contact), SIZE, periodic=path.periodic)
     for patches in (asp.patches(path).at(contact), asp.patches(pickle.loads(pickle.dumps(history))).at(contact)):
         np.testing.assert_array_equal(patches.labels, expected.labels)
     path.save(tmp_path / "path.npz")
     opened = asp.open(tmp_path / "path.npz")
+    assert path.periodic == opened.periodic == side
     # A path that was opened iterates the fields of its last state.
     np.testing.assert_allclose(opened.pressure(), path.pressure(), rtol=0.0, atol=1e-9 * path.pressure().max())
     opened.continue_to(area_fraction=0.4)

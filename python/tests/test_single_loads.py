@@ -134,6 +134,9 @@ def test_yielding(rough: asp.Surface, body: asp.HalfSpace) -> None:
     assert one.plastic_work == pytest.approx(2.5e9 * one.plastic_volume, rel=1e-9)
     left = one.residual_surface(rough)
     np.testing.assert_array_equal(left.z, rough.z - one.plastic_depth)
+    with pytest.raises(asp.AsperityError) as other:
+        one.residual_surface(asp.Surface(rough.z, 2.0 * rough.size[0]))
+    assert other.value.kind == "CellMismatch"
     elastic = asp.solve(rough, body, load=2000.0, check=False)
     assert elastic.yielded_map is None and elastic.plastic_depth is None and elastic.yielded_nodes == 0
     with pytest.raises(asp.AsperityError) as over:

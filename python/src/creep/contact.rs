@@ -224,7 +224,7 @@ impl Creep {
     /// The state of the elastic path whose contact and gap those of a time are, for its fields: ``path.gap(state)``.
     ///
     /// Where an approach below 0 holds the surfaces apart it is that of first touch, whose gap is too narrow: `gap` has
-    /// the one of the time, and ``seal.leak_of(held.gap(t), no_contact, path.size, periodic=path.is_periodic)``, with a
+    /// the one of the time, and ``seal.leak_of(held.gap(t), no_contact, path.size, periodic=path.periodic)``, with a
     /// map of False alone, the leak.
     ///
     /// Parameters

@@ -5,6 +5,7 @@ use asperity::contact::PlasticState;
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::nalgebra::{DMatrix, Scalar};
 use asperity::patches::{ContactEdge, constriction};
+use asperity::surface::HeightMap;
 use numpy::{Element, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -206,8 +207,8 @@ impl Solution {
     /// -------
     /// Surface
     fn residual_surface(&self, surface: PyRef<'_, Surface>) -> Fallible<Surface> {
-        let topography = surface.topography()?;
-        let left = self.solution.residual_surface(topography.map())?;
+        let pressed = asperity::Surface::heights(&surface.topography()?, &self.setting.grid)?;
+        let left = self.solution.residual_surface(&HeightMap::new(pressed)?)?;
         Ok(Surface::new(*surface.grid(), left.into_matrix())?)
     }
 

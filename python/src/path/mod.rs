@@ -23,7 +23,7 @@ use pyo3::types::PyDict;
 pub(crate) type Engine = asperity::LoadingPath;
 use self::inner::Inner;
 use crate::arrays::{column, rows, shape};
-use crate::choice;
+use crate::choice::{self, Repeats};
 use crate::compute::{detached, interruptible_with, locked};
 use crate::errors::{Failure, Fallible};
 use crate::history::{History, Setting, check_on_path};
@@ -349,10 +349,11 @@ impl LoadingPath {
         self.elastic_bodies(py)
     }
 
-    /// Whether the half-space repeats with the sides of the surface.
+    /// Whether the half-space repeats with the sides of the surface, or ``"x"`` or ``"y"`` if it does along one: what
+    /// functions of maps take as ``periodic``.
     #[getter]
-    fn is_periodic(&self) -> bool {
-        self.setting.boundary == asperity::Boundary::Periodic
+    fn periodic(&self) -> Repeats {
+        Repeats::of(self.setting.boundary)
     }
 
     /// The surface, with heights [m] from its highest node.

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use asperity::loading::History as States;
-use asperity::{Boundary, LoadingSolver, LoadingState};
+use asperity::{LoadingSolver, LoadingState};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::{LoadingPath, Setting};
 use crate::arrays::column;
+use crate::choice::Repeats;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
 use crate::history::History;
@@ -137,10 +138,10 @@ impl Unloading {
         self.last.contact.plastic.map_or(0.0, |plastic| plastic.volume)
     }
 
-    /// Whether the half-space repeats with the sides of the surface.
+    /// Whether the half-space repeats with the sides of the surface, or ``"x"`` or ``"y"`` if it does along one.
     #[getter]
-    fn is_periodic(&self) -> bool {
-        self.loading.setting.boundary == Boundary::Periodic
+    fn periodic(&self) -> Repeats {
+        Repeats::of(self.loading.setting.boundary)
     }
 
     fn __repr__(&self) -> String {

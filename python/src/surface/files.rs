@@ -98,7 +98,7 @@ fn read(
     let measured = match Source::of(source)? {
         Source::File(path) => detached(py, || options.read(path))??,
         Source::Bytes(bytes, found) => {
-            let name = name.or(found).unwrap_or_default();
+            let name = name.or(found).unwrap_or_else(|| "these bytes".into());
             detached(py, || options.read_bytes(bytes, name))??
         }
     };

@@ -47,7 +47,8 @@ fn sampled(py: Python<'_>, shape: &(impl Heights + Sync), grid: Grid) -> Fallibl
 /// long_cutoff : float, optional
 ///     Longest wavelength [m].
 /// rms_height, rms_gradient, prefactor : float
-///     One of them fixes the amplitude, exactly: root mean square height [m], gradient, or the prefactor of the spectrum
+///     One of them fixes the amplitude, exactly: root mean square height [m], gradient (that of the spectrum, as in
+///     `Surface.moments`; differences of nodes, `Surface.rms_gradient`, find less), or the prefactor of the spectrum
 ///     [m^(2 - 2H)].
 /// seed : int
 ///     The same seed gives the same surface, bit for bit, on every machine.

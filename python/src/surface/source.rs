@@ -21,7 +21,7 @@ pub(super) fn surface(
         return Ok(copy(surface.get()));
     }
     // SurfaceTopography and what looks like it: `heights` is a method there, and an array has none.
-    if z.hasattr("physical_sizes")? && z.getattr("heights").is_ok_and(|h| h.is_callable()) {
+    if z.hasattr("physical_sizes")? && z.getattr_opt("heights")?.is_some_and(|h| h.is_callable()) {
         if !nothing_else {
             return Err(Failure::arguments(
                 "an object with physical_sizes and unit has its size: give neither size nor height_unit",
@@ -85,9 +85,9 @@ fn of_topography(topography: &Bound<'_, PyAny>) -> Fallible<Surface> {
             sizes.len()
         )));
     };
-    let unit: Option<String> = match topography.getattr("unit") {
-        Ok(unit) => unit.extract()?,
-        Err(_) => None,
+    let unit: Option<String> = match topography.getattr_opt("unit")? {
+        Some(unit) => unit.extract()?,
+        None => None,
     };
     let metres = match unit {
         Some(unit) => unit.parse::<LengthUnit>()?.metres(),
@@ -96,9 +96,9 @@ fn of_topography(topography: &Bound<'_, PyAny>) -> Fallible<Surface> {
             1.0
         }
     };
-    let periodic = match topography.getattr("is_periodic") {
-        Ok(periodic) => periodic.extract()?,
-        Err(_) => None,
+    let periodic = match topography.getattr_opt("is_periodic")? {
+        Some(periodic) => periodic.extract()?,
+        None => None,
     };
     let found = found.transposed()?;
     let size = Lengths::Both([x * metres, y * metres]);
