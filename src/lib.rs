@@ -97,8 +97,8 @@
 //! # Limits of the model
 //!
 //! Contact is frictionless, without adhesion unless that is asked for ([`adhesion`]), and slopes are small. It is
-//! elastic, and unloading retraces loading, unless a hardness is given
-//! ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the greatest pressure with it.
+//! elastic unless a hardness is given ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the
+//! greatest pressure with it. With a hardness or adhesion unloading does not retrace loading.
 
 #![warn(missing_debug_implementations)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -8,7 +8,7 @@ use crate::{Error, Grid};
 
 /// A quantity of the state at which each node touched, for the first time if it leaves in between; NaN where none did.
 ///
-/// One such map holds every contact map of a path: where the load of activation is at most W is the contact under the
+/// One such map holds every contact map of a path on which no node leaves: where the load of activation is at most W is the contact under the
 /// load W.
 ///
 /// ```

@@ -135,7 +135,7 @@ fn rough_surfaces_have_the_events_of_the_factor() {
         }
     }
     println!("{exceeded} of {events} errors exceed their estimate");
-    // On 128² it was 4 in 245 760; a grid as small as these has a path of a few windows.
+    // On 128² it is none; a grid as small as these has a path of a few windows.
     assert!(200 * exceeded <= events, "{exceeded} of {events}");
     estimates.sort_by(f64::total_cmp);
     let median = estimates[estimates.len() / 2];
