@@ -35,6 +35,11 @@ pub fn colour(place: usize) -> RGBColor {
     [BLUE, ORANGE, GREEN][place % 3]
 }
 
+/// Room that an axis upwards needs above the curves, so that they do not run through so many names in a corner there.
+pub fn head_room(names: usize) -> f64 {
+    0.05 + 0.1 * names as f64
+}
+
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Style {
@@ -68,6 +73,16 @@ impl Series {
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Self {
         Self { name: name.into(), colour, style, points: points.into_iter().collect() }
+    }
+
+    /// Draws the points into a panel; a single one as a dot.
+    pub fn draw<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        panel: &Panel,
+        axes: (&Axis, &Axis),
+    ) -> Drawn<DB> {
+        sample(area, panel, panel.trace(axes, self.points.iter().copied()), self)
     }
 }
 
@@ -155,20 +170,10 @@ impl Chart {
         panel.write(area, &self.title, middle, FINE * (FONT + 1), centred)?;
         panel.rule(area, &self.x, &self.y)?;
         for series in &self.series {
-            self.series(area, &panel, series)?;
+            series.draw(area, &panel, (&self.x, &self.y))?;
         }
         panel.frame(area, &self.x, &self.y)?;
         self.legend(area, &panel)
-    }
-
-    fn series<DB: DrawingBackend>(
-        &self,
-        area: &Area<DB>,
-        panel: &Panel,
-        series: &Series,
-    ) -> Drawn<DB> {
-        let points = panel.trace((&self.x, &self.y), series.points.iter().copied());
-        sample(area, points, series)
     }
 
     /// Names in a corner, on white so that curves do not run through them.
@@ -199,7 +204,7 @@ impl Chart {
                 Style::Dots => vec![((from + to) / 2, middle)],
                 _ => vec![(from, middle), (to, middle)],
             };
-            sample(area, points, series)?;
+            sample(area, panel, points, series)?;
             let at = (x + FINE * 40, middle);
             let pos = anchor(HPos::Left, VPos::Center);
             panel.write(area, &series.name, at, size, pos)?;
@@ -211,16 +216,19 @@ impl Chart {
 /// Draws pixels in the manner of a series.
 fn sample<DB: DrawingBackend>(
     area: &Area<DB>,
-    points: Vec<(i32, i32)>,
+    panel: &Panel,
+    mut points: Vec<(i32, i32)>,
     series: &Series,
 ) -> Drawn<DB> {
-    let stroke = series.colour.stroke_width(2 * FINE as u32);
-    match series.style {
+    let stroke = series.colour.stroke_width(2 * panel.stroke);
+    points.dedup();
+    // A line without a length would not show.
+    match if points.len() > 1 { series.style } else { Style::Dots } {
         Style::Line => draw_line(area, &points, stroke),
         Style::Dashed => dashes(&points).iter().try_for_each(|dash| draw_line(area, dash, stroke)),
         Style::Dots => {
             for point in points {
-                area.draw(&Circle::new(point, 3 * FINE, series.colour.filled()))?;
+                area.draw(&Circle::new(point, 3 * panel.stroke, series.colour.filled()))?;
             }
             Ok(())
         }

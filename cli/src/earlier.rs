@@ -36,15 +36,23 @@ pub(crate) const PATH: Kind = Kind {
 };
 /// A path may have written maps of the same names.
 pub(crate) const LOAD: Kind = Kind { name: "run", always: "load.csv", sometimes: &["contact_map"] };
-pub(crate) const SLIP: Kind =
-    Kind { name: "slip", always: "slip.csv", sometimes: &["history.", "stick_map.", "wear_map."] };
+pub(crate) const SLIP: Kind = Kind {
+    name: "slip",
+    always: "slip.csv",
+    sometimes: &["history.", "slip.", "stick_map.", "wear_map."],
+};
 pub(crate) const CREEP: Kind = Kind {
     name: "creep",
     always: "creep.csv",
-    sometimes: &["creep_cycles.", "leak_over_time.", "touch_times."],
+    sometimes: &["creep.", "creep_cycles.", "leak_over_time.", "touch_times."],
 };
 pub(crate) const STRESS: Kind =
-    Kind { name: "stress", always: "stress.csv", sometimes: &["section_", "stress.vti"] };
+    Kind { name: "stress", always: "stress.csv", sometimes: &["section_", "stress."] };
+pub(crate) const PATCHES: Kind = Kind {
+    name: "patches",
+    always: "patches.csv",
+    sometimes: &["activation.", "distributions.", "merge_tree.", "patches."],
+};
 pub(crate) const LEAK: Kind =
     Kind { name: "leak", always: "leak.csv", sometimes: &["flux_", "fluid_pressure_", "leak."] };
 
@@ -55,9 +63,9 @@ pub(crate) struct Earlier {
 }
 
 impl Earlier {
-    /// What is there before a run begins that reads a file, or none; nothing in a folder in which there was no such run,
+    /// What is there before a run begins that reads these files; nothing in a folder in which there was no such run,
     /// and without a folder.
-    pub(crate) fn of(kind: &Kind, folder: Option<&Path>, read: Option<&Path>) -> Self {
+    pub(crate) fn of(kind: &Kind, folder: Option<&Path>, read: &[Option<&Path>]) -> Self {
         let is_of_kind = |file: &PathBuf| {
             let name = file.file_name().and_then(|name| name.to_str());
             name.is_some_and(|name| kind.sometimes.iter().any(|begin| name.starts_with(begin)))
@@ -65,7 +73,7 @@ impl Earlier {
         let folder = folder.filter(|folder| folder.join(kind.always).is_file());
         let entries = folder.and_then(|folder| fs::read_dir(folder).ok());
         let files = entries.into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
-        let is_own = |file: &PathBuf| read.is_some_and(|read| is_same(read, file));
+        let is_own = |file: &PathBuf| read.iter().flatten().any(|read| is_same(read, file));
         let mut files: Vec<PathBuf> =
             files.filter(|file| is_of_kind(file) && !is_own(file)).collect();
         files.sort();

@@ -189,7 +189,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     let directory = options.directory();
     options.save.as_deref().into_iter().chain(directory).try_for_each(outcome::create_folder)?;
-    let earlier = Earlier::of(&earlier::LOAD, directory, None);
+    let earlier = Earlier::of(&earlier::LOAD, directory, &[]);
     let mut outcome = Outcome::default();
     let names = COLUMNS.into_iter().chain(conductions.iter().map(|(name, _)| *name));
     let mut table = format!("{}\n", names.collect::<Vec<_>>().join(","));

@@ -440,6 +440,27 @@ fn records_know_the_states_that_they_have_passed() -> Done {
     Ok(())
 }
 
+/// Behind full contact loads go on, so that a record on its way back has not come to a greater one; without adhesion
+/// its branch has ended there.
+#[test]
+fn records_that_came_to_full_contact_do_not_have_every_load() -> Done {
+    let folder = Scratch::new("adhesion_full")?;
+    let soft = SOFT.replace("--sq 2um", "--sq 1um");
+    for (work, is_there) in [("0.05", false), ("0", true)] {
+        let record = format!("--max-load 5mN --unload --record r{work}.npz --out out{work}");
+        let full = answer(&folder.0, &format!("{soft} --work-of-adhesion {work} {record}"))?;
+        assert_eq!(number(&full, "contact_area_fraction"), 1.0, "{full}");
+        run(&folder.0, &format!("path --resume r{work}.npz --max-load 5mN --unload --out same"))?;
+        let further = format!("path --resume r{work}.npz --max-load 8mN --unload --out further");
+        let done = output(&folder.0, &further)?;
+        match is_there {
+            true => assert!(done.status.success(), "{}", said(&done)),
+            false => is_refused(&done, &["on its way back", "has not come to a load of 8 mN"]),
+        }
+    }
+    Ok(())
+}
+
 #[test]
 fn what_does_not_go_with_adhesion_is_refused() -> Done {
     let folder = Scratch::new("adhesion_refused")?;

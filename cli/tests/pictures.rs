@@ -1,9 +1,9 @@
-//! Maps of contact, read back pixel by pixel.
+//! Pictures read back: maps of contact pixel by pixel, and curves as their files have them.
 
 mod common;
 
 use std::error::Error;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
 
@@ -220,5 +220,98 @@ fn maps_of_loads_have_the_areas_of_their_table() -> Done {
         let coloured = picture.coloured();
         assert!((coloured - fraction).abs() < 3.0 / 576.0, "{name}: {coloured} {fraction}");
     }
+    Ok(())
+}
+
+const BLUE: &str = "#005AA0";
+const ORANGE: &str = "#D55E00";
+
+/// What an element of an SVG has by a name.
+fn attribute<'a>(element: &'a str, name: &str) -> Option<&'a str> {
+    let (_, rest) = element.split_once(&format!(" {name}=\""))?;
+    Some(rest.split_once('"')?.0)
+}
+
+/// Colour and points of the lines that are so wide, in the order in which they were drawn.
+fn lines<'a>(svg: &'a str, width: &str) -> Vec<(&'a str, Vec<[i32; 2]>)> {
+    let point = |text: &str| -> Option<[i32; 2]> {
+        let (x, y) = text.split_once(',')?;
+        Some([x.parse().ok()?, y.parse().ok()?])
+    };
+    let lines = svg.lines().filter(|line| line.starts_with("<polyline"));
+    let lines = lines.filter(|line| attribute(line, "stroke-width") == Some(width));
+    let line = |line| {
+        let points = attribute(line, "points")?.split_whitespace().filter_map(point).collect();
+        Some((attribute(line, "stroke")?, points))
+    };
+    lines.filter_map(line).collect()
+}
+
+/// How far down the lines begin, if there are any.
+fn top(lines: &[(&str, Vec<[i32; 2]>)]) -> Option<i32> {
+    lines.iter().flat_map(|line| &line.1).map(|[_, y]| *y).min()
+}
+
+/// Pulling off begins where pressing on ends, in each of four panels, and the names are above both curves.
+#[test]
+fn the_curve_of_pulling_off_begins_where_loading_ends() -> Done {
+    let folder = with_surface("picture-back")?;
+    let surface = "--surface rough.npy --height-unit m --side 96um --side-y 64um --e-star 1MPa";
+    let line = "--work-of-adhesion 50mJ/m² --max-area-fraction 0.3 --unload";
+    run(&folder.0, &format!("path {surface} {line}"))?;
+    let svg = fs::read_to_string(folder.join("out/loading_curve.svg"))?;
+    let curves = lines(&svg, "16");
+    let turns = curves.windows(2).filter(|pair| (pair[0].0, pair[1].0) == (BLUE, ORANGE));
+    let ends: Vec<_> = turns.map(|pair| (pair[0].1.last(), pair[1].1.first())).collect();
+    assert_eq!(ends.len(), 4);
+    for (end, begin) in ends {
+        assert!(end.is_some() && end == begin, "{end:?} {begin:?}");
+    }
+    let (before, _) = svg.split_once("pulled off").ok_or("no name")?;
+    let name = before.lines().last().and_then(|text| attribute(text, "y")?.parse::<i32>().ok());
+    let curves = top(&lines(before, "16")).ok_or("no curves")?;
+    // Letters of 17 pixels in 8 units each are centred there.
+    assert!(curves > name.ok_or("no place")? + 8 * 17 / 2, "{curves} {name:?}");
+    Ok(())
+}
+
+/// First touch has no load, and the state behind it is alone.
+#[test]
+fn a_single_state_is_a_dot() -> Done {
+    let folder = with_surface("picture-single")?;
+    let line = format!("path {SURFACE} --max-load 1e-12 --conductivity 50 --charts svg");
+    run(&folder.0, &line)?;
+    assert_eq!(numbers(&folder.join("out/path.csv"), "load")?, [0.0, 1e-12]);
+    // There are two stiffnesses.
+    for (file, count) in [("loading_curve.svg", 5), ("conductance.svg", 1)] {
+        let svg = fs::read_to_string(folder.join("out").join(file))?;
+        assert_eq!(svg.matches("<circle").count(), count, "{file}");
+    }
+    Ok(())
+}
+
+/// The names of the marks are above the curve of the area. The leak has a mark where contact seals, which is not where
+/// the last channel closes if narrow ones are closed too.
+#[test]
+fn charts_over_time_say_what_is_true_and_hide_nothing() -> Done {
+    let folder = Scratch::new("picture-time")?;
+    let path = "path --nodes 24 --e-star 1e9 --max-area-fraction 0.8 --record path.npz";
+    run(&folder.0, path)?;
+    let load = 0.2 * last(&folder.join("out/path.csv"), "load")?;
+    let line = format!("creep path.npz --prony 1,0.5 --load {load:e} --charts svg");
+    let fluid = "--viscosity 1e-3 --pressure-drop 1 --along x";
+    for (least_gap, is_marked) in [("", true), ("--least-gap 1nm", false)] {
+        run(&folder.0, &format!("{line} {fluid} {least_gap}"))?;
+        let leak = fs::read_to_string(folder.join("out/leak_over_time.svg"))?;
+        assert_eq!(leak.contains("the last channel closes"), is_marked, "{least_gap}");
+    }
+    let svg = fs::read_to_string(folder.join("out/creep.svg"))?;
+    let (before, after) = svg.split_once("opacity=\"0.85\"").ok_or("no names")?;
+    let ground = before.lines().last().ok_or("no ground")?;
+    let number = |name| attribute(ground, name).and_then(|text| text.parse::<i32>().ok());
+    let bottom = number("y").zip(number("height")).map(|(y, height)| y + height);
+    assert!(after.contains("seals along"));
+    let curve = top(&lines(before, "6")).ok_or("no curve")?;
+    assert!(curve > bottom.ok_or("no ground")?, "{curve} {bottom:?}");
     Ok(())
 }

@@ -342,6 +342,12 @@ fn tables_of_an_earlier_run_are_named() -> Done {
         assert!(done.status.success(), "{said}");
         assert_eq!(said.contains("note: of an earlier slip: out/history.csv"), told, "{said}");
     }
+    fs::remove_file(folder.join("out/history.csv"))?;
+    // Charts in the other format, and records by such names.
+    fs::rename(folder.join("r.npz"), folder.join("out/slip.npz"))?;
+    let done = output(&folder.0, "slip out/slip.npz --friction 0.5 --charts svg")?;
+    let said = said(&done);
+    assert!(said.lines().any(|line| line.ends_with("of an earlier slip: out/slip.png")), "{said}");
     Ok(())
 }
 

@@ -28,7 +28,7 @@ const COMMANDS: [&str; 12] = [
     "patches ../path.npz --out .",
     "slip ../path.npz --friction 0.3 --material steel --out .",
     "stress ../path.npz --material steel --volume 3 --out .",
-    "leak ../path.npz --viscosity 1mPas --pressure-drop 1bar --along x --states 2 --out .",
+    "leak ../path.npz --viscosity 1mPas --pressure-drop 1bar --along x --states 3 --out .",
     "creep ../path.npz --prony 1,1 --load 1kN --time 10 --fields npy --out .",
     "gather ../runs --out .",
 ];

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use asperity::creep::CreepState;
 use asperity_cli::axis::Axis;
-use asperity_cli::chart::{self, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style};
+use asperity_cli::chart::{
+    self, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style, head_room,
+};
 use asperity_cli::outcome::Failure;
 
 use super::followed::Followed;
@@ -101,7 +103,8 @@ pub(super) fn draw(
     let charts = [
         chart(
             "contact area",
-            Axis::plain("contact area / nominal area", 0.0, 1.1 * largest),
+            Axis::plain("contact area / nominal area", 0.0, largest)
+                .with_room(0.0, head_room(seen.len())),
             with_marks(0.0, largest, true, area),
             Corner::TopLeft,
         ),
@@ -119,7 +122,8 @@ pub(super) fn draw(
         ),
         chart(
             "load, and the elastic load of the same contact while it grows",
-            Axis::linear("load", "N", 0.0, heaviest.max(most_effective)).with_room(0.0, 0.25),
+            Axis::linear("load", "N", 0.0, heaviest.max(most_effective))
+                .with_room(0.0, head_room(2)),
             vec![
                 curve(load, "load", BLUE, Style::Line),
                 curve(effective, "effective load", ORANGE, Style::Dashed),

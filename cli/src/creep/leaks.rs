@@ -110,8 +110,8 @@ impl Leaks {
         outcome::write(&directory.join("leak_over_time.csv"), lines)
     }
 
-    /// The leak over time, up to where nothing leaks, and when the last channel closes; `None` if nothing leaks at two
-    /// times.
+    /// The leak over time, up to where nothing leaks, and when contact closes the last channel; `None` if nothing leaks
+    /// at two times.
     pub(super) fn draw(
         &self,
         passages: &[Passage<f64>],
@@ -119,7 +119,9 @@ impl Leaks {
         directory: &Path,
     ) -> Option<Result<PathBuf, Failure>> {
         let seals = if self.seal.along() == Along::X { "seals_x" } else { "seals_y" };
-        let closing = passages.iter().find(|passage| passage.key == seals);
+        // With a least gap the last channel closes before contact closes it.
+        let by_contact = self.seal.least_gap() == 0.0;
+        let closing = passages.iter().find(|passage| by_contact && passage.key == seals);
         let closing = closing.and_then(|passage| passage.at).map(|time| times.place(time));
         let points =
             self.leaks.iter().map(|(state, leak_rate)| (times.place(state.time), *leak_rate));

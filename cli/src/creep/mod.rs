@@ -55,20 +55,26 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         None => None,
     };
     let area = record.grid().nominal_area();
-    let warning = leaks.as_ref().and_then(|leaks| leaks.warning(area));
+    let of_leaks = leaks.as_ref().and_then(|leaks| leaks.warning(area));
+    let of_cycles = sweep.as_ref().and_then(|sweep| words::coarse(sweep.as_ref().ok()?));
+    let warnings: Vec<String> = of_cycles.into_iter().chain(of_leaks).collect();
     if options.json {
-        let of_leaks = (leaks.as_ref(), warning.as_deref());
-        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref(), of_leaks));
+        let told = (leaks.as_ref(), &warnings[..]);
+        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref(), told));
     }
     words::print(options, &task, &followed, &passages, sweep.as_ref());
     leaks.iter().for_each(Leaks::print);
-    warning.iter().for_each(speech::warn);
+    warnings.iter().for_each(speech::warn);
     let Some(directory) = directory else {
         return followed.whole(&bed, &task, &options.record);
     };
     panel::register_font()?;
     outcome::create_folder(directory)?;
-    let earlier = Earlier::of(&earlier::CREEP, Some(directory), None);
+    let earlier = Earlier::of(
+        &earlier::CREEP,
+        Some(directory),
+        &[Some(options.record.as_path()), options.history.as_deref()],
+    );
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
     let times = Times::of(&followed.states, options.history.is_some());

@@ -8,6 +8,7 @@ use super::course::Task;
 use super::cycles::Sweep;
 use super::followed::{Followed, Method};
 use super::leaks::Leaks;
+use super::words;
 use crate::passages::Passage;
 
 pub(super) fn object(
@@ -15,7 +16,7 @@ pub(super) fn object(
     followed: &Followed,
     passages: &[Passage<f64>],
     sweep: Option<&Result<Sweep, Error>>,
-    (leaks, warning): (Option<&Leaks>, Option<&str>),
+    (leaks, warnings): (Option<&Leaks>, &[String]),
 ) -> Value {
     let mut object = Map::new();
     let mut put = |key: &str, value: Value| {
@@ -60,6 +61,9 @@ pub(super) fn object(
     if let Some(leaks) = leaks {
         put("leaks", leaks.object());
     }
-    put("warnings", warning.into_iter().collect());
+    if let Some(Err(error)) = sweep {
+        put("no_cycles", json!(words::no_cycles(error)));
+    }
+    put("warnings", json!(warnings));
     Value::Object(object)
 }

@@ -76,8 +76,8 @@ pub(crate) struct Options {
 
     /// Print one JSON object: the last state with time, load, effective_load, approach, contact_nodes,
     /// contact_area_fraction and mean_gap; method, step_error, recedes, enough_until, states (their number), fluidity;
-    /// percolates_x, percolates_y, seals_x, seals_y (seconds, or null); cycles; leaks, with a fluid; warnings. Files
-    /// are written only if --out is given
+    /// percolates_x, percolates_y, seals_x, seals_y (seconds, or null); cycles, or no_cycles (why there are none); leaks,
+    /// with a fluid; warnings. Files are written only if --out is given
     #[arg(long)]
     pub(super) json: bool,
 

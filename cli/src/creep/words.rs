@@ -3,7 +3,7 @@
 use asperity::creep::{ControlHistory, CreepState};
 use asperity::{BedError, CreepError, Error};
 use asperity_cli::number::{at_least, quantity, significant};
-use asperity_cli::{say, speech, units};
+use asperity_cli::{say, units};
 
 use super::Options;
 use super::course::Task;
@@ -137,25 +137,36 @@ fn cycles(sweep: &Result<Sweep, Error>) {
                 quantity(worst.dissipation, "J", 3),
                 significant(worst.loss_factor, 3)
             );
-            if sweep.is_coarse() {
-                speech::warn(format_args!(
-                    "in such a cycle only {} in or out of contact; the part of the loss that is theirs depends on the grid",
-                    match sweep.moving_nodes {
-                        1 => "1 node goes".to_string(),
-                        count => format!("{count} nodes go"),
-                    }
-                ));
-            }
         }
-        Err(Error::Creep(CreepError::NoSteadyCycle { .. })) => {
-            say!("cycles     none are steady, for the bodies flow");
+        Err(error) => say!("cycles     {}", no_cycles(error)),
+    }
+}
+
+/// Why there are no cycles.
+pub(super) fn no_cycles(error: &Error) -> String {
+    match error {
+        Error::Creep(CreepError::NoSteadyCycle { .. }) => {
+            "none are steady, for the bodies flow".to_string()
         }
         // Slow cycles press as an elastic body that has relaxed.
-        Err(Error::Bed(BedError::PathEndsBefore { quantity: "load", value, end })) => say!(
-            "cycles     not drawn: slow ones need the path up to {} N, and it ends at {}: continue it with --max-load, or take a smaller --cycle-amplitude",
+        Error::Bed(BedError::PathEndsBefore { quantity: "load", value, end }) => format!(
+            "not drawn: slow ones need the path up to {} N, and it ends at {}: continue it with --max-load, or take a smaller --cycle-amplitude",
             at_least(*value, 4),
             quantity(*end, "N", 4)
         ),
-        Err(error) => say!("cycles     not drawn: {error}"),
+        error => format!("not drawn: {error}"),
     }
+}
+
+/// That few nodes go in and out of contact in the cycle that loses most.
+pub(super) fn coarse(sweep: &Sweep) -> Option<String> {
+    let nodes = match sweep.moving_nodes {
+        1 => "1 node goes".to_string(),
+        count => format!("{count} nodes go"),
+    };
+    sweep.is_coarse().then(|| {
+        format!(
+            "in such a cycle only {nodes} in or out of contact; the part of the loss that is theirs depends on the grid"
+        )
+    })
 }

@@ -49,8 +49,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NEWTONS", value_parser = FORCE.positive())]
     load: Vec<f64>,
 
-    /// Number of states at which the leak rate along the path is computed, among them the first, the last that leaks and
-    /// the one at which the last channel closes; 0 for none but those of --load
+    /// Number of states, 3 or more, at which the leak rate along the path is computed, among them the first, the last that
+    /// leaks and the one at which the last channel closes; 0 for none but those of --load
     #[arg(long, value_name = "N", default_value_t = 40)]
     states: usize,
 
@@ -115,9 +115,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
     }
-    if options.states == 1 || (options.states == 0 && options.load.is_empty()) {
+    if matches!(options.states, 1 | 2) || (options.states == 0 && options.load.is_empty()) {
         return Err(Failure::request(
-            "--states takes 0, with a --load, or at least 2 states: the first and the last one that leaks",
+            "--states takes 0, with a --load, or at least 3 states: the first, the last that leaks and the one that closes",
         ));
     }
     let mut work = Work::new(options)?;
@@ -125,7 +125,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     let directory = outcome::directory(options.out.as_deref(), options.json);
     directory.map_or(Ok(()), outcome::create_folder)?;
-    let earlier = Earlier::of(&earlier::LEAK, directory, None);
+    let earlier = Earlier::of(&earlier::LEAK, directory, &[Some(&options.record)]);
     words::print_seal(&work.record, &work.seal);
 
     let mut outcome = Outcome::default();

@@ -24,6 +24,7 @@ use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
 use clap::Args;
 
+use crate::earlier::{self, Earlier};
 use crate::values::{FORCE, fraction};
 use followed::Followed;
 use moment::Moment;
@@ -100,6 +101,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         say!("no node has touched under load: no loads of activation to draw");
     }
     let mut outcome = Outcome::default();
+    let mut earlier = None;
     if let Ok(moment) = &moment {
         words::print_moment(moment);
         let channels = words::print_channels(&record, moment, options.corners);
@@ -108,6 +110,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(directory) = outcome::directory(options.out.as_deref(), options.json) {
         panel::register_font()?;
         outcome::create_folder(directory)?;
+        earlier = Some(Earlier::of(&earlier::PATCHES, Some(directory), &[Some(&options.record)]));
         let place = |name: &str| directory.join(name);
         if let Ok(followed) = &followed {
             outcome.written(table::write(&record, followed, &place("patches.csv")));
@@ -127,5 +130,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     outcome.note(moment.map(|_| ()));
-    outcome.finish()
+    match earlier {
+        Some(earlier) => earlier.finish(outcome),
+        None => outcome.finish(),
+    }
 }

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use super::job::Job;
 use super::sheet;
 use asperity_cli::axis::Axis;
-use asperity_cli::chart::{BLUE, ORANGE};
+use asperity_cli::chart::{BLUE, ORANGE, Series, Style};
 use asperity_cli::half_space::is_of_mean_planes;
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
@@ -113,7 +113,7 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         panel.rule(area, &x, &y)?;
         for (value, colour, _) in curves {
             let points = loaded.iter().map(|state| (state.contact.load, value(state)));
-            panel.curve(area, (&x, &y), points, *colour)?;
+            Series::new("", *colour, Style::Line, points).draw(area, &panel, (&x, &y))?;
         }
         sheet::legend(area, &panel, curves.iter().map(|(_, colour, name)| (*colour, *name)))?;
         panel.frame(area, &x, &y)?;

@@ -15,8 +15,8 @@ pub(super) fn of_one_of_many() -> Failure {
     Failure::with_code("interrupted", EXIT_CODE)
 }
 
-/// Whether a signal ends the program at once. While a path is followed it does not: the first one asks the path to
-/// stop, and the second ends the program.
+/// Whether a signal ends the program at once. While a path is followed and written it does not: the first one asks the
+/// path to stop, and the second ends the program.
 #[derive(Clone)]
 pub(super) struct Interrupt(Arc<AtomicBool>);
 

@@ -45,6 +45,5 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, branches: &Branches) -
     let approach = approach(job, has_stiffness, |s: &ContactState| s.approach);
     let pairs = [(approach, LOAD), (LOAD, AREA), (LOAD, MEAN_GAP), (LOAD, INTERFACIAL)];
     let ways = [(&branches.loading[..], "pressed on"), (&branches.unloading, "unloaded")];
-    // Load grows with the approach: that corner is free.
-    there_and_back::panels(area, pairs, ways, 0)
+    there_and_back::panels(area, pairs, ways)
 }

@@ -70,7 +70,7 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
         if options.dry_run {
             return estimate(options, "");
         }
-        let earlier = Earlier::of(&earlier::PATH, Some(&options.out), options.resume.as_deref());
+        let earlier = Earlier::of(&earlier::PATH, Some(&options.out), &[options.resume.as_deref()]);
         return earlier.finish(follow_one(options, given, &interrupt, None)?);
     }
     let there = options.ensemble.there(&options.out)?;
@@ -186,7 +186,7 @@ fn follow_one(
     let start = Instant::now();
     let mut followed = Followed::new(&job, file, options.save_every)?;
     let ended = followed.follow(&job, &mut solver, interrupt);
-    let is_interrupted = interrupt.wait_no_longer() && solver.end().is_none();
+    let is_interrupted = interrupt.is_asked() && solver.end().is_none();
     let (mut states, file) = followed.end();
     let seconds = start.elapsed().as_secs_f64();
     let is_whole = ended.is_ok() && !is_interrupted;
@@ -210,6 +210,10 @@ fn follow_one(
     let record = job.record();
     let mut kept = record.map(|name| save(name, &job, &solver, &states, &[]));
     outcome.written(file.finish(is_whole));
+    if interrupt.wait_no_longer() && summary.is_some() {
+        outcome.finish_quietly()?;
+        return Err(interrupt::of_one_of_many());
+    }
     if conducts_at_end {
         let table = PathTable::new(job.grid(), job.boundary());
         outcome.note(

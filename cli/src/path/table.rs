@@ -153,11 +153,12 @@ pub(super) fn all_warnings(
         let found = of_fields(job, growth(solver), &fields).map_err(failed)?;
         all.extend(found.into_iter().map(|warning| format!("at {at}: {warning}")));
     }
-    let last = warnings(job, solver)?.into_iter();
-    all.extend(last.map(|warning| match end {
+    let (last, of_path) = of_end(job, solver)?;
+    all.extend(last.into_iter().map(|warning| match end {
         Some(at) => format!("at {at}: {warning}"),
         None => warning,
     }));
+    all.extend(of_path);
     Ok(all)
 }
 
@@ -185,9 +186,17 @@ fn of_fields(
 
 /// What looks wrong with the end of the path.
 pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
+    let (mut warnings, of_path) = of_end(job, solver)?;
+    warnings.extend(of_path);
+    Ok(warnings)
+}
+
+/// What looks wrong with the last state, and with where the path ends.
+fn of_end(job: &Job, solver: &mut Solver) -> Result<(Vec<String>, Option<String>), Failure> {
     let failed = |error| Failure::new("cannot compute the pressure of the last state", error);
     let fields = solver.fields().map_err(failed)?;
-    let mut warnings = of_fields(job, growth(solver), &fields).map_err(failed)?;
+    let warnings = of_fields(job, growth(solver), &fields).map_err(failed)?;
+    let mut of_path = None;
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
         // A flat surface, whose nodes all touch before there is a load, says nothing of units.
@@ -199,12 +208,12 @@ pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Fa
             }
             _ => "",
         };
-        warnings.push(format!(
+        of_path = Some(format!(
             "the path ended before {target}.{beyond} If you did not expect this, check the units of E*, {}, of heights and of sides",
             quantity(job.e_star(), "Pa", 3)
         ));
     }
-    Ok(warnings)
+    Ok((warnings, of_path))
 }
 
 /// Those that are asked for and reached, otherwise some at loads spread over the path.

@@ -1,13 +1,16 @@
 //! Four panels of a contact that is loaded and goes back, with a curve each way.
 
 use asperity_cli::axis::Axis;
-use asperity_cli::chart::{BLUE, ORANGE};
+use asperity_cli::chart::{BLUE, ORANGE, Series, Style, head_room};
 use asperity_cli::half_space::is_of_mean_planes;
 use asperity_cli::panel::{Area, Drawn};
 use plotters::prelude::*;
 
 use super::job::Job;
 use super::sheet;
+
+/// Room at the upper end of an axis.
+const ROOM: f64 = 0.06;
 
 /// A quantity of a state: its name, its unit, and what it is.
 pub(super) type Quantity<S> = (&'static str, &'static str, fn(&S) -> f64);
@@ -24,24 +27,26 @@ pub(super) fn approach<S>(job: &Job, has_stiffness: bool, of: fn(&S) -> f64) -> 
     (name, "m", of)
 }
 
-/// Draws the second of each pair of quantities over the first, there and back, with a legend in one panel.
+/// Draws the second of each pair of quantities over the first, there and back, with a legend in the first panel.
 pub(super) fn panels<DB: DrawingBackend, S>(
     area: &Area<DB>,
     pairs: [(Quantity<S>, Quantity<S>); 4],
     ways: [Way<'_, S>; 2],
-    legend: i32,
 ) -> Drawn<DB> {
     for (place, (x, y)) in (0_i32..).zip(pairs) {
         let panel = sheet::panel(place);
-        let (horizontal, vertical) = (axis(x, ways), axis(y, ways));
+        let has_legend = place == 0;
+        let above = if has_legend { head_room(ways.len()) } else { ROOM };
+        let (horizontal, vertical) = (axis(x, ways, ROOM), axis(y, ways, above));
         panel.rule(area, &horizontal, &vertical)?;
         let curves = ways.into_iter().zip([BLUE, ORANGE]);
         let curves = curves.filter(|((states, _), _)| !states.is_empty());
-        for ((states, _), colour) in curves.clone() {
+        for ((states, name), colour) in curves.clone() {
             let points = states.iter().map(|state| ((x.2)(state), (y.2)(state)));
-            panel.curve(area, (&horizontal, &vertical), points, colour)?;
+            let curve = Series::new(name, colour, Style::Line, points);
+            curve.draw(area, &panel, (&horizontal, &vertical))?;
         }
-        if place == legend {
+        if has_legend {
             sheet::legend(area, &panel, curves.map(|((_, name), colour)| (colour, name)))?;
         }
         panel.frame(area, &horizontal, &vertical)?;
@@ -49,7 +54,7 @@ pub(super) fn panels<DB: DrawingBackend, S>(
     area.present()
 }
 
-fn axis<S>((name, unit, quantity): Quantity<S>, ways: [Way<'_, S>; 2]) -> Axis {
+fn axis<S>((name, unit, quantity): Quantity<S>, ways: [Way<'_, S>; 2], room: f64) -> Axis {
     let values = || {
         let states = ways.into_iter().flat_map(|(states, _)| states);
         states.map(quantity).filter(|value| value.is_finite())
@@ -57,5 +62,5 @@ fn axis<S>((name, unit, quantity): Quantity<S>, ways: [Way<'_, S>; 2]) -> Axis {
     let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
     // A mean gap that is to be zero may be off by rounding.
     let low = if low < -1e-6 * high { low } else { 0.0 };
-    Axis::linear(name, unit, low, high).with_room(if low < 0.0 { 0.05 } else { 0.0 }, 0.06)
+    Axis::linear(name, unit, low, high).with_room(if low < 0.0 { 0.05 } else { 0.0 }, room)
 }

@@ -116,7 +116,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     words::print(&joint, sheared.as_ref());
     match directory {
         Some(directory) => {
-            let earlier = Earlier::of(&earlier::SLIP, Some(directory), options.history.as_deref());
+            let read = [Some(options.record.as_path()), options.history.as_deref()];
+            let earlier = Earlier::of(&earlier::SLIP, Some(directory), &read);
             earlier.finish(write(&joint, sheared.as_ref(), directory)?)
         }
         None => Ok(()),

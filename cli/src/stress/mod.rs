@@ -120,7 +120,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     panel::register_font()?;
     outcome::create_folder(directory)?;
-    let earlier = Earlier::of(&earlier::STRESS, Some(directory), None);
+    let earlier = Earlier::of(&earlier::STRESS, Some(directory), &[Some(&options.record)]);
     let mut outcome = Outcome::default();
     let place = |name: &str| directory.join(name);
     outcome.written(table::write(&moment, &bodies, &place("stress.csv")));

@@ -1,7 +1,7 @@
 //! What is printed.
 
 use asperity::stress::{Greatest, Measure, Survey};
-use asperity_cli::number::{counted, quantity};
+use asperity_cli::number::{counted, quantity, significant};
 use asperity_cli::say;
 use serde_json::{Value, json};
 
@@ -78,7 +78,7 @@ pub(super) fn print(moment: &Moment, bodies: &[Body]) {
     );
     let (friction, angle) = moment.friction;
     if friction > 0.0 {
-        say!("friction      {friction} in a direction of {angle}° from x");
+        say!("friction      {friction} in a direction of {}° from x", significant(angle, 6));
     }
     for body in bodies {
         let depths = counted(body.survey.depths.len(), "depth");

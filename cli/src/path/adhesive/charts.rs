@@ -41,7 +41,9 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, followed: &Followed) -
     let has_stiffness = followed.states.iter().any(|s| s.contact.contact_stiffness.is_some());
     let approach = approach(job, has_stiffness, |s: &AdhesiveState| s.contact.approach);
     let pairs = [(approach, LOAD), (LOAD, AREA), (LOAD, MEAN_GAP), (approach, LOST)];
-    let ways = [(loading.states(), "pressed on"), (unloading.states(), "pulled off")];
-    // Contact grows with the load: that corner is free.
-    there_and_back::panels(area, pairs, ways, 1)
+    // Back from where loading ends.
+    let turn = loading.states().last().filter(|_| !unloading.states().is_empty());
+    let back: Vec<AdhesiveState> = turn.into_iter().chain(unloading.states()).copied().collect();
+    let ways = [(loading.states(), "pressed on"), (&back, "pulled off")];
+    there_and_back::panels(area, pairs, ways)
 }

@@ -128,10 +128,17 @@ impl Begun {
         // A record that was unloading goes on with that.
         let is_back = |state: &AdhesiveState| state.direction == Direction::Unloading;
         let is_turned = options.unload && begun.last().is_some_and(is_back);
-        // With all nodes in contact it had come to the end of what there is.
         let is_full =
             branch.last().is_some_and(|state| state.contact.contact_nodes == grid.nodes());
-        if let (true, false, None, [target, ..]) = (is_turned, is_full, ended_by, job.targets()) {
+        let sticks = job.law().is_some_and(|law| law.adhesion().given().0 > 0.0);
+        // With all nodes in contact there is more to come of loads and approaches alone, and nothing without adhesion.
+        let may_come = |target: &&ContactTarget| {
+            let of_gaps =
+                matches!(target, ContactTarget::AreaFraction(_) | ContactTarget::MeanGap(_));
+            !is_full || (sticks && !of_gaps)
+        };
+        let next = job.targets().iter().find(may_come);
+        if let (true, None, Some(target)) = (is_turned, ended_by, next) {
             return Err(Failure::request(format!(
                 "the path of the record was on its way back and has not come to {}: without --unload it goes there",
                 named(target)

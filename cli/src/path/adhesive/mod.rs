@@ -127,7 +127,7 @@ pub(super) fn follow(
     let mut course = Course::new(job, path, options)?;
     let settings = job.settings().write(&options.out)?;
     let ended = course.follow(interrupt, options.unload);
-    let is_interrupted = interrupt.wait_no_longer() && !course.is_done();
+    let is_interrupted = interrupt.is_asked() && !course.is_done();
     let (followed, lines) = course.end();
     let seconds = start.elapsed().as_secs_f64();
     let is_whole = ended.is_ok() && !is_interrupted;
@@ -148,6 +148,10 @@ pub(super) fn follow(
         return Err(interrupted(given, &name, followed.states.len()));
     }
     let mut kept = job.record().map(|name| followed.save(name, &[]));
+    if interrupt.wait_no_longer() && summary.is_some() {
+        outcome.finish_quietly()?;
+        return Err(interrupt::of_one_of_many());
+    }
     let pressed = followed.pressed();
     let mut greatest = f64::NAN;
     match pressed.map(|state| fields_at(&followed, &state).map(|found| (state, found))) {
