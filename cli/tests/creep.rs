@@ -242,6 +242,15 @@ fn facts_of_flow_and_relaxation() -> Done {
     assert!(is_near(number(&flows, "fluidity"), 0.25, 1e-12), "{flows}");
     assert!(is_near(number(&flows, "effective_load"), 3.0 * load, 1e-12), "{flows}");
     assert!(flows["cycles"].is_null(), "{flows}");
+    assert_eq!(flows["no_cycles"], "none are steady, for the bodies flow");
+    let amplitude = 1e-6 * load;
+    let small =
+        format!("creep path.npz --prony 1,0.5 --load {load:e} --cycle-amplitude {amplitude:e}");
+    let coarse = answer(&folder.0, &small)?;
+    let warnings = coarse["warnings"].as_array().ok_or("no warnings")?;
+    let is_of_few =
+        |warning: &Value| warning.as_str().is_some_and(|text| text.contains("only 0 nodes go"));
+    assert!(coarse["no_cycles"].is_null() && warnings.iter().any(is_of_few), "{coarse}");
 
     let elastic = record.history().at_load(0.5 * end).ok_or("no state")?.contact;
     let line = format!("creep path.npz --prony 1,0.5 4,0.25 --approach {:e}", elastic.approach);
