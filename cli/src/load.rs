@@ -70,9 +70,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "BYTES", value_parser = bytes, help_heading = "Solver")]
     memory_budget: Option<usize>,
 
-    /// Print one JSON object instead: states, one for each load that was solved for, with the columns of load.csv,
-    /// iterations and seconds (SI units; null where there is no number); load.csv and pictures are written only if
-    /// --out is given
+    /// Print one JSON object instead: states, one for each load that was solved for, with at (what was asked for),
+    /// the columns of load.csv, iterations and seconds (SI units; null where there is no number), and warnings; load.csv
+    /// and pictures are written only if --out is given
     #[arg(long)]
     json: bool,
 
@@ -212,7 +212,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             let cells: Vec<&str> = numbers.iter().map(|(_, number)| number.as_str()).collect();
             // Writing to a text cannot fail.
             let _ = writeln!(table, "{}", cells.join(","));
-            states.push(object(&numbers, &solution, seconds.0));
+            states.push(object(at, &numbers, &solution, seconds.0));
             rows.push(row);
             print_words(at, &solution, &resolution, seconds);
             let on = (&grid, half_space.boundary());
@@ -258,7 +258,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     warnings.iter().for_each(speech::warn);
     if options.json {
-        answer!("{}", json!({ "states": states }));
+        answer!("{}", json!({ "states": states, "warnings": warnings }));
     }
     earlier.finish(outcome)
 }
@@ -336,8 +336,13 @@ fn numbers(solution: &FixedLoadSolution, row: &Row, grid: &Grid) -> Vec<(&'stati
     COLUMNS.into_iter().zip(of_columns).chain(conducted).collect()
 }
 
-/// The same for programs, and the effort; what is no number is null.
-fn object(numbers: &[(&'static str, String)], solution: &FixedLoadSolution, seconds: f64) -> Value {
+/// The same for programs, with what was asked for, and the effort; what is no number is null.
+fn object(
+    at: At,
+    numbers: &[(&'static str, String)],
+    solution: &FixedLoadSolution,
+    seconds: f64,
+) -> Value {
     let named = numbers.iter().map(|(name, number)| {
         // Counts are integers.
         let count = number.parse().map(|count: u64| json!(count));
@@ -345,6 +350,7 @@ fn object(numbers: &[(&'static str, String)], solution: &FixedLoadSolution, seco
         ((*name).to_string(), value.unwrap_or(Value::Null))
     });
     let mut object: Map<String, Value> = named.collect();
+    object.insert("at".to_string(), json!(at.to_string()));
     object.insert("iterations".to_string(), json!(solution.effort.iterations));
     object.insert("seconds".to_string(), json!(seconds));
     Value::Object(object)

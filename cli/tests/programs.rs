@@ -48,6 +48,10 @@ fn every_command_answers_programs() -> Done {
     let found: Vec<f64> = states.iter().map(|state| number(&state["load"])).collect();
     assert_eq!(found, [1e-7, 2e-7]);
     assert!(states.iter().all(|state| number(&state["iterations"]) > 0.0));
+    let asked: Vec<_> = states.iter().map(|state| state["at"].as_str()).collect();
+    assert_eq!(asked, [Some("100 nN"), Some("200 nN")]);
+    let warning = loads["warnings"][1].as_str().unwrap_or_default();
+    assert!(warning.starts_with("at 200 nN: the contact is not resolved"), "{loads}");
 
     let info = answer(folder, "info rough.npy --json")?;
     assert_eq!(info["nx"], 48);
