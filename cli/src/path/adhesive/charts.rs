@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::adhesion::AdhesiveState;
+use asperity::adhesion::{AdhesiveBranch, AdhesiveState};
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel::{Area, Drawn};
@@ -41,9 +41,13 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, followed: &Followed) -
     let has_stiffness = followed.states.iter().any(|s| s.contact.contact_stiffness.is_some());
     let approach = approach(job, has_stiffness, |s: &AdhesiveState| s.contact.approach);
     let pairs = [(approach, LOAD), (LOAD, AREA), (LOAD, MEAN_GAP), (approach, LOST)];
-    // Back from where loading ends.
-    let turn = loading.states().last().filter(|_| !unloading.states().is_empty());
-    let back: Vec<AdhesiveState> = turn.into_iter().chain(unloading.states()).copied().collect();
-    let ways = [(loading.states(), "pressed on"), (&back, "pulled off")];
-    there_and_back::panels(area, pairs, ways)
+    let there = behind(followed.before_loading(), &loading);
+    let back = behind(loading.states().last().copied(), &unloading);
+    there_and_back::panels(area, pairs, [(&there, "pressed on"), (&back, "pulled off")])
+}
+
+/// The states of a branch, if there are any, behind the one that it begins from.
+fn behind(begin: Option<AdhesiveState>, branch: &AdhesiveBranch) -> Vec<AdhesiveState> {
+    let begin = begin.filter(|_| !branch.states().is_empty());
+    begin.into_iter().chain(branch.states().iter().copied()).collect()
 }
