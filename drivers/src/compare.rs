@@ -92,8 +92,12 @@ pub(crate) fn same_path(
     let computed = |state: &LoadingState| {
         state.contact.approach + dense.uniform_displacement(state.contact.load)
     };
-    // States at one approach joined together, as a window began: ties as far as they may be off.
+    // States at one approach joined together, as a window began: ties as far as they may be off. What would have joined
+    // with the last one of a path that ends before is not there.
     let is_together = |k: usize| {
+        if k + 1 == found.len() && found.len() < exact.len() {
+            return true;
+        }
         let neighbours = [k.checked_sub(1), Some(k + 1)];
         let mut neighbours = neighbours.into_iter().flatten().filter_map(|k| found.get(k));
         let own = found[k].contact.approach;
